@@ -128,8 +128,8 @@ def with_rotary_at_rest(
 def counted_from(chain: Kinematics, zero: _Floats, length: float) -> Kinematics:
     """The chain of a part that was measured with a tool while the rotary axes were at a part zero.
 
-    Its frame is that of the machine while the axes that turn the part stand there: their joints are told
-    where they lie then, and their coordinates count from there. Its origin is the tip of the tool with X, Y
+    Its frame is that of the machine while the axes that turn the part are there: their joints have
+    the places that they have then, and their coordinates count from there. Its origin is the tip of the tool with X, Y
     and Z at zero.
 
     Args:

@@ -2,13 +2,17 @@
 
 import json
 import re
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import h5py
 import pytest
 import trimesh
 from command_line import Twin, machine_with_gain
+from typer.main import get_command
 
+from twin.cli import app
 from twin.files.shipped import resource_root
 
 PROGRAMS = resource_root("programs")
@@ -145,8 +149,17 @@ def test_a_dull_drive_fails_the_tolerance_and_names_the_line(twin: Twin, tmp_pat
     assert f"helix.nc:{result['contour_um']['worst_line']}:1: error contour_um: " in done.stderr
 
 
+def help_texts(command: Any) -> Iterator[str]:
+    yield command.help or ""
+    for each in command.params:
+        yield getattr(each, "help", None) or ""
+    for each in getattr(command, "commands", {}).values():
+        yield from help_texts(each)
+
+
 def test_help_says_units_and_loses_no_word(twin: Twin) -> None:
     """Square brackets in a help text would be taken for markup and vanish."""
+    assert not [text for text in help_texts(get_command(app)) if re.search(r"\[[a-z#/@]", text)]
     for command in ("render", "compare", "machine circle", "machine show"):
         text = twin(*command.split(), "--help").stdout
         assert "(mm" in text or "(s)" in text, command

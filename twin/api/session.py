@@ -218,7 +218,7 @@ class Session:
         self.commands.append(command)
 
     def _chunks(self) -> Iterator[Chunk]:
-        """The program; what compares hears of its moves first."""
+        """The program; the comparison gets its moves first."""
         for chunk in self.run.dry_run.program.timed_chunks():
             self._comparison.expect(chunk.moves)
             yield chunk

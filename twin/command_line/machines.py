@@ -88,7 +88,10 @@ def calibrate(
     ] = None,
     ball_bars: Annotated[
         list[Path] | None,
-        typer.Option("--ball-bar", help="Log of a ball-bar, named by [ball_bar] of --columns."),
+        typer.Option(
+            "--ball-bar",
+            help="Log of a ball-bar; the table ball_bar of --columns names its columns.",
+        ),
     ] = None,
     programs: Annotated[
         Path | None,

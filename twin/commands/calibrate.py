@@ -140,9 +140,9 @@ def calibrate_and_print(request: CalibrationRequest) -> ExitCode:
 
 
 def _give_large_arrays_back() -> None:
-    """Let glibc return every large array to the system once it is let go.
+    """Let glibc return every large array to the system once it is freed.
 
-    By itself it keeps them as soon as some were let go: of an hour's log a tenth more memory is taken then.
+    By default it keeps them once some were freed: of an hour's log a tenth more memory is taken then.
     """
     with contextlib.suppress(AttributeError, OSError, TypeError):
         ctypes.CDLL(None).mallopt(_M_MMAP_THRESHOLD, _LARGE_BYTES)

@@ -25,7 +25,7 @@ from twin.coupling.turning_tool import (
 from twin.cutting.kernels.covered_cells import Cells, Marks, Sum
 from twin.cutting.kernels.sweep import sweep
 from twin.cutting.kernels.tooth_forces import tooth_forces
-from twin.cutting.kernels.walls import Material, leave_walls, lose_trace, no_trace
+from twin.cutting.kernels.walls import WalledMap, leave_walls, lose_trace, no_trace
 from twin.machine.simulation.process import Physics
 from twin.nc.canonical import FloatArray
 from twin.units import MM
@@ -50,7 +50,7 @@ class PartTransform(NamedTuple):
 class Cut(NamedTuple):
     """A tool in a height map, which is cut, and where the part is."""
 
-    material: Material
+    material: WalledMap
     cells: Cells
     tool: TurningTool
     place: PartTransform

@@ -4,7 +4,7 @@ from twin.coupling.cutting_kernels import Cut, PartTransform, follow_cutting, no
 from twin.coupling.cutting_process import CutSetting, CuttingProcess, Rows, SpindleTurning
 from twin.coupling.turning_tool import TurningTool
 from twin.cutting.heights.height_map import HeightMap, raw_walls
-from twin.cutting.kernels.walls import Material
+from twin.cutting.kernels.walls import WalledMap
 from twin.machine.simulation.process import Physics
 from twin.nc.canonical import FloatArray
 from twin.units import SECONDS_PER_MINUTE
@@ -36,7 +36,7 @@ class HeightMapProcess(CuttingProcess):
         self, physics: Physics, turning: SpindleTurning, tool: TurningTool, rows: Rows
     ) -> None:
         cells = self.material.cells
-        material = Material(cells.heights, cells.grid, self.walls)
+        material = WalledMap(cells.heights, cells.grid, self.walls)
         place = self._place._replace(length_difference=turning.length_difference)
         follow_cutting(
             physics,

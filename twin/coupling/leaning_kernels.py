@@ -26,7 +26,7 @@ from twin.cutting.tridexel.dexels import Dexels, Lattice
 from twin.cutting.tridexel.edge import Leaning
 from twin.cutting.tridexel.edge_forces import EdgeScratch, edge_forces, empty_scratch
 from twin.cutting.tridexel.solids.moving_solid import Poses
-from twin.cutting.tridexel.sweep import Sum, sweep
+from twin.cutting.tridexel.sweep import StepColumn, sweep
 from twin.kinematics import Kinematics
 from twin.machine.simulation.process import Physics
 from twin.nc.canonical import FloatArray
@@ -80,7 +80,7 @@ class Pose(NamedTuple):
         lean: That in the time between two teeth, shape (3,).
         bend: Deflection of its tip in the part's frame, shape (3,) [mm].
         cut_to: Where the material was cut up to: two poses, the later one second.
-        sums: What ``sweep`` adds to, shape (1, ``Sum.COLUMNS``).
+        sums: What ``sweep`` adds to, shape (1, ``StepColumn.COLUMNS``).
         edge: What of the edge is in the material.
     """
 
@@ -101,7 +101,7 @@ def nowhere(axes: int) -> Pose:
     cut_to, step = (Poses(np.zeros((2, 3)), np.zeros((2, 3))) for _ in range(2))
     return Pose(
         np.eye(3), np.zeros((axes, 3)), lean_speed, lean, bend, cut_to, step,
-        np.zeros((1, Sum.COLUMNS)), empty_scratch(),
+        np.zeros((1, StepColumn.COLUMNS)), empty_scratch(),
     )  # fmt: skip
 
 
@@ -245,7 +245,7 @@ def _look(period: float, cut: LeaningCut, memory: Memory, pose: Pose) -> bool:
         cut_to.tip[1], cut_to.axis[1] = cut_to.tip[0], cut_to.axis[0]
         return False
     memory.looked[:] = memory.feed
-    if pose.sums[0, Sum.LENGTH] <= 0.0 and numbers[CutNumber.MET] <= 0.0:
+    if pose.sums[0, StepColumn.LENGTH] <= 0.0 and numbers[CutNumber.MET] <= 0.0:
         return True
     sense = 1.0 if numbers[CutNumber.SPEED] >= 0.0 else -1.0
     leaning = Leaning(tip, frame, memory.feed, pose.lean, sense)

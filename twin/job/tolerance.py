@@ -66,10 +66,10 @@ class BaselineTable(Table):
     path_um: Positive = 1.0
     """Start, end or centre of a block [µm or mdeg]."""
     feed_percent: Annotated[float, Field(ge=0)] = 0.1
-    """Commanded feed of a block, either way."""
+    """Commanded feed of a block, up or down."""
     cycle_time_percent: Annotated[float, Field(ge=0)] = 1.0
-    """Change of the cycle time, either way."""
+    """Change of the cycle time, up or down."""
     contour_um: Annotated[float, Field(ge=0)] = 1.0
     """Growth of the greatest contour error [µm]."""
     cut_percent: Annotated[float, Field(ge=0)] = 1.0
-    """Change of the volume that is cut, of each tool's, and of the share of air, either way."""
+    """Change of the volume that is cut, of each tool's, and of the share of air, up or down."""

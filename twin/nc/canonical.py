@@ -1,4 +1,4 @@
-"""Canonical moves: what every dialect's program comes down to.
+"""Canonical moves: the common result of every dialect's program.
 
 The verbs between a dialect and the rest of the twin are few: straight moves and arcs (a helix is
 an arc that also advances along its normal), dwells, and functions such as M3. Every one carries

@@ -20,7 +20,6 @@ class Coverage:
     """
 
     def __init__(self, source: Source, dialect: Dialect) -> None:
-        """Nothing was run yet."""
         self._source = source
         self._dialect = dialect
         # Files behind the program hold what it may call, which need not be come to.

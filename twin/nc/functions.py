@@ -48,7 +48,7 @@ def starts_spindle(function: float) -> bool:
 
 
 def turns_behind(function: int, turned: float) -> float:
-    """Whether the spindle turns behind an M code, where it did as told before; 0 or 1.
+    """Whether the spindle turns behind an M code, where it did what was commanded before; 0 or 1.
 
     M19 is no stop here: whether a feed per revolution may follow it, no control page says.
     """
@@ -68,7 +68,7 @@ class SpindleState:
     and the program goes on (SINUMERIK 840D sl, "Axes and spindles", maximum speed of the gear stage).
 
     Attributes:
-        counter_clockwise: Which way it turns, or turned last.
+        counter_clockwise: Whether it turns, or last turned, counter-clockwise.
         speed: Its last speed [1/min]; None where nobody has given.
         tool_speed: What the job says of the tool in it [1/min], or None.
         has_word: The control has a word for the speed.

@@ -32,7 +32,7 @@ Record = dict[str, Any]
 
 
 def records(interpretation: Interpretation) -> Iterator[Record]:
-    """Everything the program comes to, one record each, in program order: the lines of JSON, read.
+    """All results of the program, one record each, in program order: the lines of JSON, read.
 
     Raises:
         ProgramError: After its diagnostic has been yielded as the last record.
@@ -48,7 +48,7 @@ def text_lines(interpretation: Interpretation) -> Iterator[str]:
 
 
 def json_lines(interpretation: Interpretation) -> Iterator[str]:
-    """The records as JSON, one object a line: moves told by the chunk, the rest record by record."""
+    """The records as JSON, one object a line: moves chunk by chunk, the rest record by record."""
     axes = interpretation.settings.axes
     count, length, turn, told = 0, 0.0, 0.0, 0
     try:

@@ -50,7 +50,7 @@ class Run:
     """
 
     def __init__(self, preparation: Preparation) -> None:
-        """Build the machine, and interpret the whole program, so that no error is met half-way.
+        """Build the machine, and interpret the whole program, so that no error is found in the middle of the motion.
 
         Raises:
             ConfigError: The model is wrong, or the program brings a tool that the job does not list.

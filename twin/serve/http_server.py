@@ -151,7 +151,7 @@ async def _parts(
 ) -> AsyncIterator[bytes]:
     """The documents of a stream: one when something was observed, one when nothing was for long.
 
-    A client that reads so slowly that the buffer has passed it by is told so, and the stream ends.
+    Where a client reads so slowly that observations are overwritten, it gets the error, and the stream ends.
     """
     yield writer.part(document)
     interval = max(query.interval_ms or 0, LEAST_INTERVAL_MS) / MS_PER_S

@@ -119,7 +119,7 @@ class SocketServer:
             ssl_certfile=self._certificate,
             ssl_keyfile=self._key,
         )
-        # What a stranger sends is nothing that the terminal need hear of.
+        # Malformed requests are not logged on the terminal.
         logging.getLogger("uvicorn.error").setLevel(logging.CRITICAL)
         self._server = uvicorn.Server(config)
         self._thread = threading.Thread(

@@ -12,7 +12,7 @@ from twin.cutting.heights.height_map import HeightMap, blank
 from twin.cutting.heights.sweeping import sweep_lines
 from twin.cutting.kernels.teeth import ANGLE_BINS, ToothScratch, add_force_between, tooth_bench
 from twin.cutting.kernels.tooth_forces import tooth_forces
-from twin.cutting.kernels.walls import Material, WallArray, leave_walls, no_trace, no_walls
+from twin.cutting.kernels.walls import WallArray, WalledMap, leave_walls, no_trace, no_walls
 from twin.cutting.tools import profile
 from twin.job.job_file import StockTable, ToolTable
 from twin.nc.canonical import FloatArray
@@ -31,8 +31,8 @@ class Plate(NamedTuple):
     walls: WallArray
 
     @property
-    def material(self) -> Material:
-        return Material(self.map.heights, self.map.grid, self.walls)
+    def material(self) -> WalledMap:
+        return WalledMap(self.map.heights, self.map.grid, self.walls)
 
 
 def plate(cell: float = 0.1) -> Plate:

@@ -12,6 +12,7 @@ from twin.cutting.cut import Cutter
 from twin.cutting.heights.height_map import HeightMap, blank
 from twin.cutting.heights.part import part_mesh, write_stl
 from twin.job.job_file import StockTable, ToolTable
+from twin.nc.canonical import FloatArray
 from twin.toolpath.part_frame import PartFrame
 
 ORIGIN = np.zeros(3)
@@ -135,3 +136,32 @@ def test_a_slot_through_the_edge_keeps_the_edge_beside_it() -> None:
     beside = np.abs(vertices[:, 1] - 0.1) > 2.25
     assert (vertices[edge & beside, 2] == 0.0).all()
     assert (vertices[edge & (np.abs(vertices[:, 1] - 0.1) < 1.75), 2] == -3.0).all()
+
+
+def wall_points(mesh: trimesh.Trimesh) -> FloatArray:
+    """Corners of the upright faces inside of the blank's sides, shape (n, 3) [mm]."""
+    steep = mesh.triangles[np.abs(mesh.face_normals[:, 2]) < 0.5].reshape(-1, 3)
+    return steep[np.abs(steep[:, :2]).max(axis=1) < 14.0]
+
+
+@pytest.mark.parametrize("cell", [0.2, 0.4])
+def test_walls_lie_where_the_tool_left_them(cell: float) -> None:
+    def cut(corners: FloatArray) -> FloatArray:
+        stock = StockTable(shape="box", size=(30.0, 30.0, 8.0), cell=cell)
+        tool = ToolTable(number=1, diameter=4.0)
+        cutter = Cutter(stock, tool, PartFrame(None, (0.0, 0.0)), np.zeros(3))
+        path = np.column_stack([corners, np.full(len(corners), -3.0)])
+        cutter.add(samples(path), np.zeros(len(path), np.bool_))
+        mesh = part_mesh(cutter.map)
+        mesh.merge_vertices()
+        assert mesh.is_watertight
+        return wall_points(mesh)
+
+    turn = np.linspace(0.0, 2 * np.pi, 721)
+    ring = cut(np.array([0.013, 0.007]) + 10.0 * np.column_stack([np.cos(turn), np.sin(turn)]))
+    radius = np.hypot(ring[:, 0] - 0.013, ring[:, 1] - 0.007)
+    assert np.abs(np.abs(radius - 10.0) - 2.0).max() < 0.03 * cell
+    ahead = np.array([np.cos(np.pi / 6), np.sin(np.pi / 6)])
+    slot = cut(np.array([-40.0, 40.0])[:, None] * ahead)
+    across = slot[:, 1] * ahead[0] - slot[:, 0] * ahead[1]
+    assert np.abs(np.abs(across) - 2.0).max() < 0.002 * cell

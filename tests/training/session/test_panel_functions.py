@@ -38,6 +38,23 @@ def rest(session: SceneSession) -> None:
     raise AssertionError(f"the axes never came to rest: {session.room.alarm}")
 
 
+def do_and_rest(session: SceneSession, what: str, /, **arguments: object) -> None:
+    do(session, what, **arguments)
+    rest(session)
+
+
+def start(session: SceneSession, text: str | None = None) -> None:
+    """Start the program that is loaded, or another, until it ends or waits."""
+    if text is not None:
+        load(session, text)
+    do_and_rest(session, "cycle_start")
+
+
+def to_line(session: SceneSession, line: int) -> None:
+    while session.room.line < line:
+        session.advance()
+
+
 def load(session: SceneSession, text: str) -> None:
     session.room.program.load(text)
 
@@ -127,16 +144,15 @@ def test_single_block_stops_behind_blocks_that_move_nothing(session):
     do(session, "mode", mode="single")
     seen = []
     for _ in range(6):
-        do(session, "cycle_start")
-        rest(session)
+        start(session)
         room = session.room
         seen.append(
             (room.line, room.auxiliaries.spindle.turns, room.auxiliaries.coolant, at(session)[0])
         )
-    start = seen[0][3]
+    there = seen[0][3]
     assert seen[:5] == [
-        (1, False, False, start),
-        (2, True, False, start),
+        (1, False, False, there),
+        (2, True, False, there),
         (3, True, False, 0.0),
         (4, True, True, 0.0),
         (5, True, True, 5.0),
@@ -149,14 +165,11 @@ def test_single_block_stops_behind_blocks_that_move_nothing(session):
 
 def test_a_block_that_began_in_automatic_was_not_run_singly(session):
     do(session, "cycle_start")
-    while session.room.line < 5:
-        session.advance()
-    do(session, "mode", mode="single")
-    rest(session)
+    to_line(session, 5)
+    do_and_rest(session, "mode", mode="single")
     assert session.room.line == 5
     assert session.room.judge.evidence.single == set()
-    do(session, "cycle_start")
-    rest(session)
+    start(session)
     assert session.room.judge.evidence.single == {6}
 
 
@@ -166,11 +179,9 @@ def test_a_hold_within_a_single_block_goes_on_to_its_end(session):
     for _ in range(2):
         do(session, "cycle_start")
     session.advance(100)
-    do(session, "feed_hold")
-    rest(session)
+    do_and_rest(session, "feed_hold")
     assert session.room.line == 2
-    do(session, "cycle_start")
-    rest(session)
+    start(session)
     assert (session.room.line, at(session)[0]) == (2, -40.0)
 
 
@@ -178,8 +189,7 @@ def test_a_hold_within_a_single_block_goes_on_to_its_end(session):
 def test_the_optional_stop_stops_where_its_switch_says_so(session, on):
     load(session, "N10 G90 F500\nN20 G0 X-5\nN30 M1\nN40 G0 X5\nN50 M30")
     do(session, "switch", name="optional_stop", on=on)
-    do(session, "cycle_start")
-    rest(session)
+    start(session)
     assert session.room.slot.waiting == on
     assert at(session)[0] == (-5.0 if on else 5.0)
 
@@ -188,8 +198,7 @@ def test_the_optional_stop_stops_where_its_switch_says_so(session, on):
 def test_a_block_with_a_slash_is_left_out_where_the_switch_says_so(session, on):
     load(session, "N10 G90 G0 X-5\n/N20 G0 X5\nN30 M30")
     do(session, "switch", name="block_skip", on=on)
-    do(session, "cycle_start")
-    rest(session)
+    start(session)
     assert at(session)[0] == (-5.0 if on else 5.0)
 
 
@@ -203,8 +212,7 @@ def test_what_changes_how_a_program_is_read_cannot_change_while_it_runs(session)
 def test_a_dry_run_goes_at_its_own_feed_and_finishes_nothing(session):
     do(session, "switch", name="dry_run", on=True)
     do(session, "cycle_start")
-    while session.room.line < 5:
-        session.advance()
+    to_line(session, 5)
     session.advance(40)
     velocity = session.room.samples.joint_velocity[-1, :3]
     assert 60.0 * float(np.linalg.norm(velocity)) == pytest.approx(3000.0, rel=1e-2)
@@ -214,16 +222,14 @@ def test_a_dry_run_goes_at_its_own_feed_and_finishes_nothing(session):
 
 def test_a_search_goes_up_over_and_down_and_waits(session):
     do(session, "search", line=5)
-    do(session, "cycle_start")
-    rest(session)
+    start(session)
     room = session.room
     assert room.slot.waiting
     assert at(session) == (-40.0, -20.0, -2.0)
     assert room.auxiliaries.spindle.turns
     assert room.alarm is None
     do(session, "cycle_start")
-    while room.line < 6:
-        session.advance()
+    to_line(session, 6)
     assert room.slot.modal is None or "G1" in room.slot.modal.codes
     rest(session)
     assert room.slot.run is None
@@ -232,12 +238,9 @@ def test_a_search_goes_up_over_and_down_and_waits(session):
 
 def test_a_search_lifts_a_tool_that_stands_in_the_part_before_it_travels(session):
     do(session, "cycle_start")
-    while session.room.line < 6:
-        session.advance()
-    do(session, "feed_hold")
-    rest(session)
-    do(session, "reset")
-    rest(session)
+    to_line(session, 6)
+    do_and_rest(session, "feed_hold")
+    do_and_rest(session, "reset")
     assert at(session)[2] == pytest.approx(-2.0, abs=0.01)
     do(session, "search", line=8)
     do(session, "cycle_start")
@@ -252,10 +255,8 @@ def test_a_search_lifts_a_tool_that_stands_in_the_part_before_it_travels(session
 
 def test_a_search_behind_a_side_leaves_the_part_unfinished(session):
     do(session, "search", line=6)
-    do(session, "cycle_start")
-    rest(session)
-    do(session, "cycle_start")
-    rest(session)
+    start(session)
+    start(session)
     assert session.room.slot.run is None
     assert session.room.alarm is None
     assert not session.room.judge.evidence.ended_well
@@ -264,9 +265,7 @@ def test_a_search_behind_a_side_leaves_the_part_unfinished(session):
 def test_a_search_that_finds_nothing_is_told(session):
     load(session, "N10 G90 G0 X0\n(goto end)\nN30 M30")
     do(session, "search", line=2)
-    do(session, "cycle_start")
-    rest(session)
-    assert session.room.alarm is not None
+    start(session)
     assert session.room.alarm.message == "the program never comes to line 2"
     assert refused(session, "search", line=9) == "the program has 3 lines"
 
@@ -289,49 +288,38 @@ def test_a_search_does_not_begin_within_a_compensated_contour(session, code, end
 
 def test_jog_during_a_hold_and_the_way_back_to_the_path(session):
     do(session, "cycle_start")
-    while session.room.line < 5:
-        session.advance()
+    to_line(session, 5)
     session.advance(40)
-    do(session, "feed_hold")
-    rest(session)
+    do_and_rest(session, "feed_hold")
     held = at(session)
     do(session, "mode", mode="jog")
-    do(session, "jog", axis="Z", direction=1, step=20.0)
-    rest(session)
-    do(session, "jog", axis="X", direction=-1, step=10.0)
-    rest(session)
+    do_and_rest(session, "jog", axis="Z", direction=1, step=20.0)
+    do_and_rest(session, "jog", axis="X", direction=-1, step=10.0)
     assert refused(session, "set_zero", axis="X") != ""
     do(session, "mode", mode="auto")
     assert refused(session, "cycle_start") == "the axes stand off the path: return to it first"
     do(session, "mode", mode="jog")
-    do(session, "return_to_path")
-    rest(session)
+    do_and_rest(session, "return_to_path")
     assert at(session) == held
     do(session, "mode", mode="auto")
-    do(session, "cycle_start")
-    rest(session)
+    start(session)
     assert session.room.judge.evidence.ended_well
     assert session.room.alarm is None
 
 
 def test_going_back_into_a_hold_with_jogged_axes(session):
     do(session, "cycle_start")
-    while session.room.line < 5:
-        session.advance()
-    do(session, "feed_hold")
-    rest(session)
+    to_line(session, 5)
+    do_and_rest(session, "feed_hold")
     do(session, "mode", mode="jog")
     for _ in range(45):
         session.advance(10)
-    do(session, "jog", axis="Z", direction=1, step=5.0)
-    rest(session)
+    do_and_rest(session, "jog", axis="Z", direction=1, step=5.0)
     session.rewind(0.5)
     assert session.room.slot.suspended is not None
-    do(session, "return_to_path")
-    rest(session)
+    do_and_rest(session, "return_to_path")
     do(session, "mode", mode="auto")
-    do(session, "cycle_start")
-    rest(session)
+    start(session)
     assert session.room.judge.evidence.ended_well
 
 
@@ -342,16 +330,14 @@ def test_the_handwheel_moves_by_its_clicks_and_no_further_than_the_travel(sessio
         do(session, "handwheel", axis="X", clicks=2, step=0.1)
     rest(session)
     assert at(session)[0] == pytest.approx(before[0] + 1.0)
-    do(session, "handwheel", axis="X", clicks=-1, step=0.01)
-    rest(session)
+    do_and_rest(session, "handwheel", axis="X", clicks=-1, step=0.01)
     assert at(session)[0] == pytest.approx(before[0] + 0.99)
     assert session.snapshot().modal is None
 
 
 def test_the_reference_return_drives_up_first(session):
     do(session, "mode", mode="jog")
-    do(session, "jog", axis="X", direction=1, step=30.0)
-    rest(session)
+    do_and_rest(session, "jog", axis="X", direction=1, step=30.0)
     do(session, "reference")
     velocity = session.room.machine.velocity
     session.advance(10)
@@ -366,13 +352,11 @@ def test_mdi_keeps_what_a_block_left_in_force_until_reset(session):
     do(session, "mode", mode="mdi")
     for text in ("G91 G1 F600", "X2", "X2"):
         do(session, "mdi", text=text)
-        do(session, "cycle_start")
-        rest(session)
+        start(session)
     assert session.room.alarm is None
     stands = at(session)[0]
     do(session, "mdi", text="G90 X10")
-    do(session, "cycle_start")
-    rest(session)
+    start(session)
     assert at(session)[0] == 10.0
     assert stands != 10.0
     do(session, "reset")
@@ -384,8 +368,7 @@ def test_an_mdi_block_keeps_the_work_offset(session):
     do(session, "mode", mode="mdi")
     for text in ("G55", "G90 G0 X1"):
         do(session, "mdi", text=text)
-        do(session, "cycle_start")
-        rest(session)
+        start(session)
     assert at(session)[0] == 8.0
 
 
@@ -394,8 +377,7 @@ def test_an_offset_that_is_typed_counts_for_the_next_mdi_block(session):
     do(session, "mode", mode="mdi")
     for text, name in (("G55", "G55"), ("G90 G0 X1", "G54"), ("X1", "")):
         do(session, "mdi", text=text)
-        do(session, "cycle_start")
-        rest(session)
+        start(session)
         if name:
             do(session, "set_offset", axis="X", value=9.0, name=name)
     assert at(session)[0] == 10.0
@@ -444,8 +426,7 @@ def test_the_program_can_be_taken_back_and_loaded_anew(session):
 
 
 def test_a_new_blank_has_not_been_cut(session):
-    do(session, "cycle_start")
-    rest(session)
+    start(session)
     assert session.room.setup.work.removed > 0.0
     do(session, "mode", mode="jog")
     do(session, "new_blank")
@@ -495,8 +476,7 @@ def test_the_limit_alarm_stands_until_the_axis_has_left_its_switch():
     do(session, "mode", mode="jog")
     assert "end of its travel" in refused(session, "jog", axis="X", direction=1, step=1.0)
     assert "limit switch" in refused(session, "jog", axis="Y", direction=1, step=1.0)
-    do(session, "jog", axis="X", direction=-1, step=1.0)
-    rest(session)
+    do_and_rest(session, "jog", axis="X", direction=-1, step=1.0)
     assert session.room.alarm is not None
     do(session, "reset")
     assert session.room.alarm is None
@@ -504,11 +484,8 @@ def test_the_limit_alarm_stands_until_the_axis_has_left_its_switch():
 
 
 def test_an_alarm_names_the_block_by_its_number(session):
-    load(session, "N10 G90 F500\nN20 G1 X9999\nN30 M30")
-    do(session, "cycle_start")
-    rest(session)
+    start(session, "N10 G90 F500\nN20 G1 X9999\nN30 M30")
     alarm = session.room.alarm
-    assert alarm is not None
     assert (alarm.code, alarm.line, alarm.block) == ("soft-limit", 2, "N20")
 
 
@@ -524,8 +501,7 @@ def test_the_number_of_a_block_is_what_its_language_reads(text, number):
 
 
 def test_a_jog_changes_nothing_that_is_in_force(session):
-    do(session, "cycle_start")
-    rest(session)
+    start(session)
     before = session.snapshot().modal
     assert before is not None
     do(session, "mode", mode="jog")
@@ -551,24 +527,19 @@ def test_time_counts_from_the_first_touch():
 
 def test_at_a_program_stop_the_axes_can_be_jogged_and_come_back(session):
     """M0 is where a part is measured (Fagor 8070: tool inspection; SINUMERIK Operate: JOG, REPOS)."""
-    load(session, "N10 G90 G1 F500 X1\nN20 M0\nN30 G1 X3\nN40 M30")
-    do(session, "cycle_start")
-    rest(session)
+    start(session, "N10 G90 G1 F500 X1\nN20 M0\nN30 G1 X3\nN40 M30")
     room = session.room
     assert (room.slot.waiting, room.line, at(session)[0]) == (True, 2, 1.0)
     assert "reset first" in refused(session, "mode", mode="mdi")
     do(session, "mode", mode="jog")
-    do(session, "jog", axis="X", direction=1, step=5.0)
-    rest(session)
+    do_and_rest(session, "jog", axis="X", direction=1, step=5.0)
     do(session, "mode", mode="auto")
     assert "off the path" in refused(session, "cycle_start")
     do(session, "mode", mode="jog")
-    do(session, "return_to_path")
-    rest(session)
+    do_and_rest(session, "return_to_path")
     do(session, "mode", mode="auto")
     assert room.line == 2
-    do(session, "cycle_start")
-    rest(session)
+    start(session)
     assert at(session)[0] == 3.0
     assert room.slot.run is None
 
@@ -576,15 +547,12 @@ def test_at_a_program_stop_the_axes_can_be_jogged_and_come_back(session):
 def test_going_back_to_a_program_stop_with_jogged_axes(session, monkeypatch):
     monkeypatch.setattr(checkpoints, "APART_S", 0.1)
     session = SceneSession(session.scene)
-    load(session, "N10 G90 G1 F500 X1\nN20 M0\nN30 G1 X3\nN40 M30")
-    do(session, "cycle_start")
-    rest(session)
+    start(session, "N10 G90 G1 F500 X1\nN20 M0\nN30 G1 X3\nN40 M30")
     do(session, "mode", mode="jog")
     session.advance(40)
     session.rewind(0.3)
     do(session, "mode", mode="auto")
-    do(session, "cycle_start")
-    rest(session)
+    start(session)
     assert at(session)[0] == 3.0
 
 
@@ -597,8 +565,7 @@ def test_while_a_program_moves_the_spindle_is_stopped_by_hand_and_not_started(se
     assert not session.room.auxiliaries.spindle.counter_clockwise
     do(session, "spindle", on=False)
     assert not session.room.auxiliaries.spindle.turns
-    do(session, "feed_hold")
-    rest(session)
+    do_and_rest(session, "feed_hold")
     do(session, "spindle", on=True)
     assert session.room.auxiliaries.spindle.turning == 2000.0
 
@@ -607,8 +574,7 @@ def test_what_stood_before_the_axes_at_a_reset_does_not_happen(session):
     load(session, "N10 G90 G1 F500 X-1\nN20 S2000 M3\nN30 M8\nN40 G1 X-2\nN50 M0\nN60 M30")
     do(session, "cycle_start")
     session.advance(5)
-    do(session, "reset")
-    rest(session)
+    do_and_rest(session, "reset")
     assert session.room.slot.run is None
     assert at(session)[0] > -1.0
     assert not session.room.auxiliaries.spindle.turns
@@ -623,8 +589,7 @@ def test_a_reset_stops_spindle_and_coolant_in_every_state(session, state):
         do(session, "cycle_start")
         session.advance(15)
     if state in ("held", "jogged"):
-        do(session, "feed_hold")
-        rest(session)
+        do_and_rest(session, "feed_hold")
     if state == "jogged":
         do(session, "mode", mode="jog")
         do(session, "jog", axis="X", direction=1)
@@ -667,12 +632,10 @@ def test_a_search_comes_to_where_its_block_begins(text, line, begins, ends):
     session = SceneSession(read_scene(scene_path("linuxcnc_round_corners")))
     load(session, text)
     do(session, "search", line=line)
-    do(session, "cycle_start")
-    rest(session)
+    start(session)
     assert session.room.line == line
     assert at(session)[:2] == pytest.approx(begins)
-    do(session, "cycle_start")
-    rest(session)
+    start(session)
     assert session.room.slot.run is None
     assert at(session)[:2] == pytest.approx(ends)
 
@@ -687,9 +650,7 @@ def test_a_tool_that_is_added_is_mounted_and_cuts(session):
     do(session, "change_tool", number=7)
     assert session.room.setup.tables.length_difference[2] == 10.0
     do(session, "mode", mode="auto")
-    load(session, "N10 T7 M6\nN20 S3000 M3\nN30 G90 G1 F500 X1\nN40 M30")
-    do(session, "cycle_start")
-    rest(session)
+    start(session, "N10 T7 M6\nN20 S3000 M3\nN30 G90 G1 F500 X1\nN40 M30")
     assert session.room.alarm is None
 
 

@@ -190,8 +190,8 @@ def _held(command: FloatArray, step: float) -> FloatArray:
 def _bulge(parameters: AxisParameters, system: "_System") -> float:
     """Of the force at an input over its mean around it: per commanded acceleration, in units of h²/12.
 
-    The speed that is told stands still over a step: of the speed that it makes the inputs see the lowest,
-    and of the integral of the trail that it stands for the highest.
+    The commanded speed is constant over a step: of the speed that follows from it the inputs see the lowest,
+    and of the integral of the corresponding trail the highest.
     """
     loop = kv_per_second(parameters.kv)
     damping = 4.0 * parameters.damping_ratio**2 * loop

@@ -49,10 +49,11 @@ def _mesh(
     while height_map.heights[::step, ::step].size > MESH_CELLS:
         step += 1
     surface = surface_mesh(height_map, step)
-    heights = surface.heights(height_map)
+    vertices = surface.vertices(height_map)
+    heights = vertices[..., 2]
     patches = surface.patches & all_corners(heights > height_map.bottom)
     _separate_pinches(patches)
-    top_faces = surface_faces(patches)
+    top_faces = surface_faces(patches, heights)
     below = heights.size
     start, end = open_edges(patches).T
     walls = np.concatenate(
@@ -68,19 +69,22 @@ def _mesh(
         underside = top_faces[:, ::-1] + below
     faces = np.concatenate([top_faces, underside, walls])
     plan = np.stack([surface.x.ravel(), surface.y.ravel()], 1)
-    top = np.column_stack(
-        [*(place.ravel() for place in surface.places(height_map)), heights.ravel()]
-    )
+    top = vertices.reshape(-1, 3)
+    beside_holes = surface_faces(surface.patches & ~patches, heights).ravel()
+    plan[beside_holes] = top[beside_holes, :2]
     bottom = np.column_stack([plan, np.full(below, height_map.bottom)])
     used, renumbered = np.unique(faces, return_inverse=True)
     middle = [*height_map.outline.center, height_map.bottom]
-    vertices = np.concatenate([top, bottom, [middle]])[used]
     painted = None
     if colours is not None:
         facet = np.where(surface.cell.ravel() < 0, 0, surface.cell.ravel())
         raw = np.tile(np.array(RAW_RGB, np.uint8), (below + 1, 1))
         painted = np.concatenate([colours.reshape(-1, 3)[facet], raw])[used]
-    return vertices, renumbered.reshape(faces.shape), painted
+    return (
+        np.concatenate([top, bottom, [middle]])[used],
+        renumbered.reshape(faces.shape),
+        painted,
+    )
 
 
 def _separate_pinches(patches: BoolArray) -> None:

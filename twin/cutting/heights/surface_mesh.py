@@ -1,28 +1,26 @@
 """A mesh of vertices over a height map, with a rim that lies exactly on the blank's edge.
 
-Cells are cut as a whole, by their middles. A cutter that leaves less than a cell beside the blank's
-edge takes some cells of the rim and leaves others, so that a rim drawn by its cells alone would be a
-fringe of teeth. How far such a wall lies before the middles of the cells that stand is known
-(``twin/cutting/kernels/wall_distance.py``): there the rim is lowered, and the cells' vertices lie on the wall.
+Cells are cut as a whole, by their middles. Where a wall passes beside these is known closer
+(``twin/cutting/kernels/wall_distance.py``): the vertices on both of its sides are moved onto it.
 """
 
 import dataclasses
 
 import numpy as np
+import numpy.typing as npt
 
 from twin.cutting.heights.height_map import HeightMap
 from twin.cutting.heights.outline import BoolArray
-from twin.cutting.kernels.wall_distance import KNOWN
+from twin.cutting.kernels.wall_distance import EQUAL_MM, KNOWN
+from twin.cutting.kernels.wall_places import NEARER_CELLS, Vertices, Walls, onto_walls
 from twin.nc.canonical import FloatArray, IntArray
 
-NEARER_CELLS = 0.02
-"""By how much a wall must lie before the blank's edge to be another one: single precision and the grid's shift [cells]."""
-BEHIND_CELLS = 0.5
-"""How far behind such a wall the middles of cells may be cut that belong to it; others are a slot's [cells]."""
-BAND_CELLS = 2.2
-"""How far inside of the edge the middles of such cells lie at most [cells]."""
-
 _NEIGHBOURS = ((0, 1), (1, 0), (0, -1), (-1, 0), (1, 1), (1, -1), (-1, 1), (-1, -1))
+_ALONG = 0.3
+"""Cosine between a wall and the blank's edge from which on it is not followed along the edge."""
+
+_SHARE = 0.999
+"""Share of the way to a wall that vertices are moved, so that no two come to lie on each other."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -35,42 +33,58 @@ class SurfaceMesh:
         cell: The cell, counted through the map's heights, that gives each vertex its height,
             shape (my, mx); -1 for vertices that do not belong to the blank.
         rim: Vertices on the blank's edge, counted through the mesh, shape (n,).
-        band: Cells near the blank's edge, counted through the map's heights, shape (m,).
+        inside: How far the middles of cells lie inside of the blank's edge, shape (ny, nx) [cells].
         patches: Which squares between four vertices belong to the blank, shape (my-1, mx-1).
-        spacing: Between vertices, except towards the rim [mm].
+        step: Cells from one vertex to the next, except towards the rim.
     """
 
     x: FloatArray
     y: FloatArray
     cell: IntArray
     rim: IntArray
-    band: IntArray
+    inside: npt.NDArray[np.float32]
     patches: BoolArray
-    spacing: float
+    step: int
 
-    def heights(self, height_map: HeightMap) -> FloatArray:
-        """Height of every vertex, shape (my, mx) [mm]; the bottom where there is no blank."""
-        result = np.where(self.cell < 0, height_map.bottom, height_map.heights.ravel()[self.cell])
-        cells, _, foot = _cut_rim(height_map, self.band)
-        lowered = np.full(height_map.heights.size, np.inf)
-        lowered[cells] = foot
-        result.ravel()[self.rim] = np.minimum(
-            result.ravel()[self.rim], lowered[self.cell.ravel()[self.rim]]
-        )
+    def vertices(self, height_map: HeightMap) -> FloatArray:
+        """Where every vertex is, shape (my, mx, 3) [mm]; at the bottom where there is no blank."""
+        z, size = self._heights(height_map), height_map.cell
+        walls = Walls(height_map.heights, height_map.behind, self.inside)
+        x, y = (self.x - height_map.origin[0]) / size, (self.y - height_map.origin[1]) / size
+        moved = np.zeros((*z.shape, 3))
+        vertices = Vertices(x, y, z, self.cell, self.step, self.step * size)
+        onto_walls(walls, vertices, moved)
+        self._along_edge(height_map, moved)
+        at = moved.any(axis=-1)
+        here = np.stack([self.x[at], self.y[at]])
+        there = np.stack(height_map.outline.snap(*(here + size * moved[at, :2].T)))
+        result = np.stack([self.x, self.y, z], axis=-1)
+        result[at, :2] = (here + _SHARE * (there - here)).T
+        result[at, 2] += moved[at, 2]
         return result
 
-    def places(self, height_map: HeightMap) -> tuple[FloatArray, FloatArray]:
-        """X and Y of every vertex, each of shape (my, mx) [mm]: those behind a cut rim lie on its wall."""
-        x, y = self.x.copy(), self.y.copy()
-        cells, outwards, _ = _cut_rim(height_map, self.band)
-        moved = np.zeros((height_map.heights.size, 2))
-        moved[cells] = outwards
-        inner = np.ones(x.size, np.bool_)
-        inner[self.rim] = False
-        inner &= self.cell.ravel() >= 0
-        x.ravel()[inner] += moved[self.cell.ravel()[inner], 0]
-        y.ravel()[inner] += moved[self.cell.ravel()[inner], 1]
-        return x, y
+    def _heights(self, height_map: HeightMap) -> FloatArray:
+        """Height of every vertex, shape (my, mx) [mm]; a rim before which a wall was cut is as low as its foot."""
+        result = np.where(self.cell < 0, height_map.bottom, height_map.heights.ravel()[self.cell])
+        cells = self.cell.ravel()[self.rim]
+        behind = height_map.behind
+        told, inside = behind.reshape(-1, behind.shape[-1])[cells], self.inside.ravel()[cells]
+        off, own = told[:, 0] - KNOWN, result.ravel()[self.rim]
+        cut = (off > 0.0) & (inside - off > NEARER_CELLS) & (told[:, 1] < own)
+        result.ravel()[self.rim] = np.where(cut, np.minimum(told[:, 3] - EQUAL_MM, own), own)
+        return result
+
+    def _along_edge(self, height_map: HeightMap, moved: FloatArray) -> None:
+        """Let vertices of the rim come to their walls along the blank's edge."""
+        way = moved.reshape(-1, 3)[self.rim, :2]
+        inwards = height_map.outline.inwards(self.x.ravel()[self.rim], self.y.ravel()[self.rim])
+        along = np.stack([-inwards[:, 1], inwards[:, 0]], 1)
+        share, length = (way * along).sum(1), np.hypot(*way.T)
+        meets = np.abs(share) > _ALONG * length
+        reach = np.where(meets, length**2 / np.where(meets, share, 1.0), 0.0)
+        moved.reshape(-1, 3)[self.rim] = np.column_stack(
+            [reach[:, None] * along, np.zeros(len(reach))]
+        )
 
 
 def surface_mesh(height_map: HeightMap, step: int = 1) -> SurfaceMesh:
@@ -105,64 +119,12 @@ def surface_mesh(height_map: HeightMap, step: int = 1) -> SurfaceMesh:
         np.where(inside, grid_y, snapped_y),
         cell,
         np.nonzero((~inside & (cell >= 0)).ravel())[0],
-        _band(height_map),
+        (height_map.outline.inside(height_map.x, height_map.y[:, None]) / height_map.cell).astype(
+            np.float32
+        ),
         all_corners(cell >= 0) & ~all_corners(~inside),
-        spacing,
+        step,
     )
-
-
-def _band(height_map: HeightMap) -> IntArray:
-    inside = height_map.outline.inside(height_map.x, height_map.y[:, None])
-    return np.nonzero(((inside >= 0.0) & (inside <= BAND_CELLS * height_map.cell)).ravel())[0]
-
-
-def _cut_rim(height_map: HeightMap, band: IntArray) -> tuple[IntArray, FloatArray, FloatArray]:
-    """Cells that stand at the blank's edge behind a wall that was cut between it and their middles.
-
-    Args:
-        band: The cells near the edge, counted through the map's heights.
-
-    Returns:
-        The cells, the displacement from each one's middle to its wall, shape (n, 2) [mm], and the height at
-        the wall's foot, shape (n,) [mm]; of a cut so thin that it took no cell at all, none.
-    """
-    heights, size = height_map.heights, height_map.cell
-    row, column = np.divmod(band, heights.shape[1])
-    x, y = height_map.x[column], height_map.y[row]
-    edge = height_map.outline.inside(x, y) / size
-    told, lowest = height_map.behind[row, column, 0] - KNOWN, height_map.behind[row, column, 1]
-    wall = edge - told
-    cut = (told >= 0.0) & (wall > NEARER_CELLS) & (heights[row, column] > lowest)
-    cells, row, column, x, y = band[cut], row[cut], column[cut], x[cut], y[cut]
-    told, wall, own = told[cut], wall[cut], heights[row, column]
-    foot, slot = np.full(len(cells), np.inf), np.zeros(len(cells), np.bool_)
-    for down, along in _NEIGHBOURS:
-        there = np.clip(row + down, 0, heights.shape[0] - 1)
-        beside = np.clip(column + along, 0, heights.shape[1] - 1)
-        inside = height_map.outline.inside(height_map.x[beside], height_map.y[there]) / size
-        lower = (heights[there, beside] < own) & (inside >= 0.0)
-        before = lower & (inside < wall + BEHIND_CELLS)
-        slot |= lower & ~before
-        foot = np.where(before, np.minimum(foot, heights[there, beside]), foot)
-    foot = _of_the_nearest(
-        np.arctan2(y - height_map.outline.center[1], x - height_map.outline.center[0]), foot
-    )
-    keep = ~slot & (foot < own)
-    outwards = -height_map.outline.inwards(x, y) * (told * size)[:, None]
-    return cells[keep], outwards[keep], foot[keep]
-
-
-def _of_the_nearest(turn: FloatArray, values: FloatArray) -> FloatArray:
-    """Values around a middle, where one is infinite that of the nearest other; all infinite: as they are."""
-    order = np.argsort(turn)
-    known = order[np.isfinite(values[order])]
-    if not len(known):
-        return values
-    turns = np.concatenate([turn[known[-1:]] - 2 * np.pi, turn[known], turn[known[:1]] + 2 * np.pi])
-    around = np.concatenate([values[known[-1:]], values[known], values[known[:1]]])
-    after = np.searchsorted(turns, turn).clip(1, len(turns) - 1)
-    nearest = np.where(turn - turns[after - 1] <= turns[after] - turn, after - 1, after)
-    return np.where(np.isfinite(values), values, around[nearest])
 
 
 def all_corners(vertices: BoolArray) -> BoolArray:
@@ -170,12 +132,21 @@ def all_corners(vertices: BoolArray) -> BoolArray:
     return vertices[:-1, :-1] & vertices[1:, :-1] & vertices[:-1, 1:] & vertices[1:, 1:]
 
 
-def surface_faces(patches: BoolArray) -> IntArray:
-    """Two triangles for each patch, counter-clockwise from above, as vertex numbers, (2n, 3)."""
+def surface_faces(patches: BoolArray, heights: FloatArray) -> IntArray:
+    """Two triangles for each patch, counter-clockwise from above, as vertex numbers, (2n, 3).
+
+    The edge between them joins the two corners that are the more alike in height, as a wall's upper or lower edge does.
+
+    Args:
+        heights: Of the vertices, shape (my, mx) [mm].
+    """
     columns = patches.shape[1] + 1
     row, column = np.nonzero(patches)
     a = row * columns + column
-    b, c, d = a + 1, a + columns + 1, a + columns
+    corners = np.stack([a, a + 1, a + columns + 1, a + columns])
+    z = heights.ravel()[corners]
+    turned = np.abs(z[1] - z[3]) < np.abs(z[0] - z[2])
+    a, b, c, d = np.where(turned, np.roll(corners, -1, axis=0), corners)
     return np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)])
 
 

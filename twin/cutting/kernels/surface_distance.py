@@ -33,7 +33,7 @@ class FoundBy(enum.IntEnum):
     """Cells alone, of which one may be wrong."""
 
 
-class Surface(NamedTuple):
+class MapSurface(NamedTuple):
     """A height map as distances see it.
 
     Attributes:
@@ -47,8 +47,8 @@ class Surface(NamedTuple):
 
 @kernel
 def surface_distances(
-    part: Surface,
-    nominal: Surface,
+    part: MapSurface,
+    nominal: MapSurface,
     cell: float,
     wanted: BoolArray,
     flat: BoolArray,
@@ -93,7 +93,9 @@ def _known(surface, row, column, height):
 
 
 @kernel
-def _wall_difference(one: Surface, other: Surface, row: int, column: int) -> tuple[float, bool]:
+def _wall_difference(
+    one: MapSurface, other: MapSurface, row: int, column: int
+) -> tuple[float, bool]:
     """How much farther before a cell that both hold the wall of one is than the other's [cells]."""
     height = min(one.heights[row, column], other.heights[row, column])
     here, there = _known(one, row, column, height), _known(other, row, column, height)
@@ -102,7 +104,7 @@ def _wall_difference(one: Surface, other: Surface, row: int, column: int) -> tup
 
 @kernel
 def _distance(
-    higher: Surface, lower: Surface, cell: float, place: tuple[int, int], flat: bool
+    higher: MapSurface, lower: MapSurface, cell: float, place: tuple[int, int], flat: bool
 ) -> tuple[float, int]:
     """Distance of the higher one's top over a cell from the lower one's material [mm]."""
     row, column = place
@@ -139,7 +141,7 @@ def _distance(
 
 
 @kernel
-def _slope_share(lower: Surface, y: int, x: int, place: tuple[int, int], top: float) -> float:
+def _slope_share(lower: MapSurface, y: int, x: int, place: tuple[int, int], top: float) -> float:
     """How far before a middle material reaches up to a height, where no wall tells [cells]."""
     row, column = place
     toward_y, toward_x = y, x

@@ -25,7 +25,7 @@ from twin.cutting.kernels.teeth import (
 )
 from twin.cutting.kernels.tool_height import profile_height
 from twin.cutting.kernels.walls import (
-    Material,
+    WalledMap,
     cell_number,
     height_at,
     height_by_wall,
@@ -75,7 +75,7 @@ class Advance(NamedTuple):
 
 @kernel
 def tooth_forces(
-    material: Material,
+    material: WalledMap,
     tip: FloatArray,
     feed: FloatArray,
     cutter: CutterForm,
@@ -113,7 +113,7 @@ def tooth_forces(
 
 @kernel
 def _meet_side(
-    material: Material, advance: Advance, cutter: CutterForm, law: ForceLaw, scratch: ToothScratch
+    material: WalledMap, advance: Advance, cutter: CutterForm, law: ForceLaw, scratch: ToothScratch
 ) -> bool:
     """Depth and force of the side in all directions."""
     scratch.depth[:] = 0.0
@@ -243,7 +243,7 @@ def _enter_side(
 
 @kernel
 def _step_between(
-    material: Material,
+    material: WalledMap,
     advance: Advance,
     cutter: CutterForm,
     place: tuple[int, float, float],
@@ -264,7 +264,7 @@ def _step_between(
 
 @kernel
 def _side_depth(
-    material: Material, advance: Advance, cutter: CutterForm, cosine: float, sine: float
+    material: WalledMap, advance: Advance, cutter: CutterForm, cosine: float, sine: float
 ) -> float:
     """How deep the side is in the material in a direction [mm]."""
     tip, direction, radius = advance.tip, advance.direction, cutter.profile.radius
@@ -285,7 +285,7 @@ def _side_depth(
 
 @kernel
 def _meet_end(
-    material: Material,
+    material: WalledMap,
     advance: Advance,
     cutter: CutterForm,
     law: ForceLaw,
@@ -318,7 +318,7 @@ def _meet_end(
 
 @kernel
 def _ring_share(
-    material: Material,
+    material: WalledMap,
     advance: Advance,
     cutter: CutterForm,
     i: int,

@@ -44,7 +44,7 @@ class _Trace(enum.IntEnum):
     KNOWN = 5
 
 
-class Material(NamedTuple):
+class WalledMap(NamedTuple):
     """What is cut.
 
     Attributes:
@@ -81,7 +81,7 @@ def lose_trace(trace: FloatArray) -> None:
 
 @kernel
 def leave_walls(
-    material: Material, trace: FloatArray, tip: FloatArray, radius: float, side_from: float
+    material: WalledMap, trace: FloatArray, tip: FloatArray, radius: float, side_from: float
 ) -> None:
     """Keep the walls that a tool leaves along its path.
 
@@ -118,7 +118,7 @@ def _note(trace: FloatArray, tip: FloatArray, ahead_x: float, ahead_y: float) ->
 
 
 @kernel
-def _leave_sides(material: Material, begin: FloatArray, end: FloatArray, tool: _Tool) -> None:
+def _leave_sides(material: WalledMap, begin: FloatArray, end: FloatArray, tool: _Tool) -> None:
     """The walls on both sides of a straight path."""
     grid, cell = material.grid, material.grid.cell
     dx, dy = end[0] - begin[0], end[1] - begin[1]
@@ -148,7 +148,7 @@ def _leave_sides(material: Material, begin: FloatArray, end: FloatArray, tool: _
 
 @kernel
 def _leave_turn(
-    material: Material, trace: FloatArray, ahead_x: float, ahead_y: float, tool: _Tool
+    material: WalledMap, trace: FloatArray, ahead_x: float, ahead_y: float, tool: _Tool
 ) -> None:
     """The wall around a place at which a tool turns, begins (no path before) or ends (none ahead)."""
     came_x, came_y = trace[_Trace.AHEAD_X], trace[_Trace.AHEAD_Y]
@@ -194,7 +194,7 @@ def _around(place: float, aside: float, cell: float) -> tuple[int, int]:
 
 @kernel
 def _leave(
-    material: Material,
+    material: WalledMap,
     row: int,
     column: int,
     off: float,
@@ -223,7 +223,7 @@ _BACK = 0.75
 
 @kernel
 def height_by_wall(
-    material: Material, x: float, y: float, place: tuple[float, float], level: float
+    material: WalledMap, x: float, y: float, place: tuple[float, float], level: float
 ) -> float:
     """Height of the material at a place, as the walls of a cell beside it say.
 
@@ -258,7 +258,7 @@ def height_by_wall(
 
 
 @kernel
-def height_at(material: Material, x: float, y: float) -> float:
+def height_at(material: WalledMap, x: float, y: float) -> float:
     """Height of the cell that a place lies in [mm]; below everything where there is none."""
     grid = material.grid
     row = cell_number(y, grid.origin[1], grid.cell)
@@ -266,7 +266,7 @@ def height_at(material: Material, x: float, y: float) -> float:
 
 
 @kernel
-def height_of(material: Material, row: int, column: int) -> float:
+def height_of(material: WalledMap, row: int, column: int) -> float:
     """Height of a cell [mm]; below everything where there is none."""
     heights = material.heights
     if row < 0 or column < 0 or row >= heights.shape[0] or column >= heights.shape[1]:

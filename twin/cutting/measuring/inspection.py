@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from twin.cutting.heights.height_map import HeightMap
-from twin.cutting.kernels.surface_distance import FoundBy, Surface, surface_distances
+from twin.cutting.kernels.surface_distance import FoundBy, MapSurface, surface_distances
 from twin.cutting.kernels.wall_distance import KNOWN, WallDistance
 from twin.cutting.material import STRAIGHT_MM
 from twin.errors import ConfigError
@@ -125,7 +125,7 @@ def inspect(part: HeightMap, nominal: HeightMap, tolerance_um: float) -> Inspect
     upright = (_beside_walls(part) | _beside_walls(nominal)) & ~edge
     rest = (touched & ~edge | upright) & ~gentle
     found_by = np.full(rest.shape, FoundBy.HEIGHT)
-    one, other = (Surface(each.heights, _without(each.behind, edge)) for each in (part, nominal))
+    one, other = (MapSurface(each.heights, _without(each.behind, edge)) for each in (part, nominal))
     surface_distances(
         one,
         other,

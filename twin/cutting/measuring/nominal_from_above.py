@@ -10,7 +10,7 @@ from twin.cutting.kernels.surface_distance import (
     REACH,
     SAME_MM,
     FoundBy,
-    Surface,
+    MapSurface,
     surface_distances,
 )
 from twin.cutting.kernels.wall_distance import KNOWN
@@ -99,6 +99,6 @@ class HeightMapNominalWatch(NominalWatch[HeightMap]):
         wanted = (nominal - heights > self._allowed) | (before > self._allowed)
         found, found_by = np.zeros(heights.shape), np.zeros(heights.shape, np.int64)
         flat = np.maximum(steepness(heights, cell), steepness(nominal, cell)) <= STEEPEST
-        part, whole = Surface(heights, behind), Surface(nominal, walls)
+        part, whole = MapSurface(heights, behind), MapSurface(nominal, walls)
         surface_distances(part, whole, cell, wanted, flat, found, found_by)
         return np.where(found_by == FoundBy.CELLS, -found - cell, -found)

@@ -27,7 +27,7 @@ _CLEAR = 0.15
 """How far before the edge the material is looked at, along the normal [cells]: beyond what the planes of crossings
 are off a round surface."""
 _FARTHEST = 2.0
-"""And at most, along its way [cells]."""
+"""And at most, along its path [cells]."""
 LEAST_CHIP = 1e-9
 """Chips below this are the arithmetic's doing [mm]."""
 
@@ -40,7 +40,7 @@ class Leaning(NamedTuple):
     Attributes:
         tip: Where its tip is in the part's frame, shape (3,) [mm].
         frame: Directions of the tool's X, Y and Z there, as rows, shape (3, 3); Z leads to the spindle.
-        feed: Way of the tip in the time between two teeth, in the tool's frame, shape (3,) [mm].
+        feed: Displacement of the tip in the time between two teeth, in the tool's frame, shape (3,) [mm].
         lean: What the axis turns by in that time: how much farther a point goes that is a millimetre higher, in the
             tool's frame, shape (3,).
         sense: 1: it turns clockwise, seen from above; -1: counter-clockwise.
@@ -53,7 +53,7 @@ class Leaning(NamedTuple):
     sense: float
 
 
-class Side(NamedTuple):
+class SideSlices(NamedTuple):
     """The slices of the side: how many, where the first begins [mm], their height [mm]."""
 
     slices: int
@@ -91,7 +91,7 @@ class Edge(NamedTuple):
     lattice: Lattice
     cutter: CutterForm
     leaning: Leaning
-    side: Side
+    side: SideSlices
     standing: Standing
 
 
@@ -109,13 +109,13 @@ def heights_of_part(lattice: Lattice, leaning: Leaning) -> tuple[float, float]:
 
 
 @arithmetic_kernel
-def slices_of_side(lattice: Lattice, cutter: CutterForm, low: float, high: float) -> Side:
+def slices_of_side(lattice: Lattice, cutter: CutterForm, low: float, high: float) -> SideSlices:
     """The slices of a side of which the part reaches between two heights above the tip [mm]."""
     begins, ends = max(low, cutter.side_from), min(high, cutter.flute)
     if begins >= ends:
-        return Side(0, begins, 0.0)
+        return SideSlices(0, begins, 0.0)
     count = int(min(math.ceil((ends - begins) / (_SLICE_CELLS * lattice.cell)), MOST_SLICES))
-    return Side(count, begins, (ends - begins) / count)
+    return SideSlices(count, begins, (ends - begins) / count)
 
 
 @arithmetic_kernel
@@ -139,26 +139,26 @@ def ring_place(edge: Edge, ring: Ring) -> RingPlace:
 
 @arithmetic_kernel
 def chip_at(edge: Edge, ring: Ring, place: float) -> float:
-    """Thickness of the chip at a place of the edge: its way along its normal [mm]."""
+    """Thickness of the chip at a place of the edge: its displacement along its normal [mm]."""
     _, height, out, down = ring_place(edge, ring)
     cosine, sine = bin_direction(place)
-    x, y, z = _way(edge.leaning, height)
+    x, y, z = _displacement(edge.leaning, height)
     return out * (x * cosine + y * sine) - down * z
 
 
 @arithmetic_kernel
-def _way(leaning: Leaning, height: float) -> _Place:
-    """Way of a point at a height between two teeth, in the tool's frame [mm]."""
+def _displacement(leaning: Leaning, height: float) -> _Place:
+    """Displacement of a point at a height between two teeth, in the tool's frame [mm]."""
     feed, lean = leaning.feed, leaning.lean
     return feed[0] + height * lean[0], feed[1] + height * lean[1], feed[2] + height * lean[2]
 
 
 @arithmetic_kernel
 def _before(edge: Edge, ring: Ring, place: float) -> bool:
-    """Whether there is material before a place of the edge, on its way."""
+    """Whether there is material before a place of the edge, on its path."""
     radius, height, out, down = ring_place(edge, ring)
     cosine, sine = bin_direction(place)
-    x, y, z = _way(edge.leaning, height)
+    x, y, z = _displacement(edge.leaning, height)
     pace = math.sqrt(x * x + y * y + z * z)
     chip = out * (x * cosine + y * sine) - down * z
     if chip <= LEAST_CHIP:

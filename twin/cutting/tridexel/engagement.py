@@ -9,7 +9,7 @@ from twin.cutting.tridexel.dexels import DIRECTIONS, TriDexel
 from twin.cutting.tridexel.intervals import Node, total_worth
 from twin.cutting.tridexel.solids.moving_solid import Poses
 from twin.cutting.tridexel.solids.solids import Solid
-from twin.cutting.tridexel.sweep import MEASURE, Sum, sweep
+from twin.cutting.tridexel.sweep import MEASURE, StepColumn, sweep
 from twin.nc.canonical import BoolArray, FloatArray, IntArray
 
 STEP_SHARE = 0.1
@@ -96,15 +96,15 @@ def cut(stock: TriDexel, poses: Poses, edge: Sequence[Solid], tool: int) -> Enga
         tool: Number that the cut surface remembers, from 1 to ``normals.MOST_TOOLS``.
     """
     sums = _swept(stock, poses, edge, tool)
-    length = sums[:, Sum.LENGTH]
+    length = sums[:, StepColumn.LENGTH]
     touched = length > 0.0
     some = np.where(touched, length, 1.0)
     return Engagement(
-        sums[:, Sum.VOLUME],
+        sums[:, StepColumn.VOLUME],
         touched,
-        np.where(touched, sums[:, Sum.HIGHEST] - sums[:, Sum.LOWEST], 0.0),
-        sums[:, Sum.MOMENT : Sum.MOMENT + 3] / some[:, None],
-        sums[:, Sum.LONGEST : Sum.LONGEST + 3].max(axis=1, initial=0.0),
+        np.where(touched, sums[:, StepColumn.HIGHEST] - sums[:, StepColumn.LOWEST], 0.0),
+        sums[:, StepColumn.MOMENT : StepColumn.MOMENT + 3] / some[:, None],
+        sums[:, StepColumn.LONGEST : StepColumn.LONGEST + 3].max(axis=1, initial=0.0),
         _shortest(sums),
     )
 
@@ -121,7 +121,7 @@ def met(stock: TriDexel, poses: Poses, solid: Solid) -> FloatArray:
 
 def _shortest(sums: FloatArray) -> FloatArray:
     """The shortest of the longest pieces along X, Y and Z, of those of which there are any, shape (n,) [mm]."""
-    longest = sums[:, Sum.LONGEST : Sum.LONGEST + 3]
+    longest = sums[:, StepColumn.LONGEST : StepColumn.LONGEST + 3]
     least = np.where(longest > 0.0, longest, np.inf).min(axis=1, initial=np.inf)
     return np.where(np.isfinite(least), least, 0.0)
 
@@ -129,8 +129,8 @@ def _shortest(sums: FloatArray) -> FloatArray:
 def _swept(stock: TriDexel, poses: Poses, solids: Sequence[Solid], tool: int) -> FloatArray:
     """Bring solids along steps, in shorter ones where they are long; what each step did."""
     short, step = in_short_steps(poses, solids)
-    sums = np.zeros((len(step), Sum.COLUMNS))
-    sums[:, Sum.LOWEST], sums[:, Sum.HIGHEST] = np.inf, -np.inf
+    sums = np.zeros((len(step), StepColumn.COLUMNS))
+    sums[:, StepColumn.LOWEST], sums[:, StepColumn.HIGHEST] = np.inf, -np.inf
     bodies, done = np.array(solids, np.float64), 0
     while True:
         done = sweep(stock.dexels, stock.lattice, short, bodies, sums, tool, done)
@@ -141,6 +141,6 @@ def _swept(stock: TriDexel, poses: Poses, solids: Sequence[Solid], tool: int) ->
         return sums
     first = np.flatnonzero(np.diff(step, prepend=-1))
     whole = np.add.reduceat(sums, first)
-    whole[:, Sum.LOWEST] = np.minimum.reduceat(sums[:, Sum.LOWEST], first)
-    whole[:, Sum.HIGHEST :] = np.maximum.reduceat(sums[:, Sum.HIGHEST :], first)
+    whole[:, StepColumn.LOWEST] = np.minimum.reduceat(sums[:, StepColumn.LOWEST], first)
+    whole[:, StepColumn.HIGHEST :] = np.maximum.reduceat(sums[:, StepColumn.HIGHEST :], first)
     return whole

@@ -128,7 +128,7 @@ def _nearest(
 
 @arithmetic_kernel
 def _along(d: int, gap: float, du: float, dv: float) -> _Place:
-    """A vector told along a direction and the two across it."""
+    """Components of a vector along a direction and the two across it."""
     if d == 0:
         return gap, du, dv
     if d == 1:

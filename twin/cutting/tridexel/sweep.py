@@ -30,7 +30,7 @@ from twin.cutting.tridexel.solids.swept import within_swept, within_swept_ball
 from twin.nc.canonical import FloatArray
 
 
-class Sum(enum.IntEnum):
+class StepColumn(enum.IntEnum):
     """Columns of what is found out about a step."""
 
     VOLUME = 0
@@ -55,7 +55,7 @@ _LEVEL = 1e-9
 """Sine of the angle to a plane below which an axis is parallel to it."""
 
 
-class Step(NamedTuple):
+class SweepStep(NamedTuple):
     """A step of the tool: its poses, and which columns of the result it writes."""
 
     number: int
@@ -98,7 +98,7 @@ def sweep(
         for each in solids:
             solid = Solid(each[0], each[1], each[2], each[3], each[4])
             goes_on, bend = cuts and number > first, _bend(poses, solid, number)
-            step = Step(number, tool, cuts, goes_on, bend, ends)
+            step = SweepStep(number, tool, cuts, goes_on, bend, ends)
             span = _within_box(lattice, poses, solid, number)
             if span[0] > span[1]:
                 continue
@@ -154,7 +154,7 @@ def _sweep_lines(
     poses: Poses,
     solid: Solid,
     sums: FloatArray,
-    step: Step,
+    step: SweepStep,
     span: tuple[float, float],
     d: int,
 ) -> bool:
@@ -249,7 +249,7 @@ def _meet(
     poses: Poses,
     solid: Solid,
     sums: FloatArray,
-    step: Step,
+    step: SweepStep,
     place: tuple[int, int, float, float],
 ) -> bool:
     """Find where one line goes through the swept solid and cut or measure it; False: memory ran out."""
@@ -265,7 +265,9 @@ def _meet(
         return True
     row, a = sums[step.number], step.number
     if not step.cuts:
-        row[Sum.LONGEST + d] = max(row[Sum.LONGEST + d], overlap(dexels, line, low, high))
+        row[StepColumn.LONGEST + d] = max(
+            row[StepColumn.LONGEST + d], overlap(dexels, line, low, high)
+        )
         return True
     below = above = 0
     if meets & ENDS_BELOW:
@@ -281,16 +283,16 @@ def _meet(
         return True
     area = lattice.cell * lattice.cell
     u, v = (d + 1) % 3, (d + 2) % 3
-    row[Sum.VOLUME] += area * piece.volume
-    row[Sum.LENGTH] += piece.length
-    row[Sum.MOMENT + d] += piece.moment
-    row[Sum.MOMENT + u] += piece.length * x
-    row[Sum.MOMENT + v] += piece.length * y
-    row[Sum.LONGEST + d] = max(row[Sum.LONGEST + d], piece.longest)
+    row[StepColumn.VOLUME] += area * piece.volume
+    row[StepColumn.LENGTH] += piece.length
+    row[StepColumn.MOMENT + d] += piece.moment
+    row[StepColumn.MOMENT + u] += piece.length * x
+    row[StepColumn.MOMENT + v] += piece.length * y
+    row[StepColumn.LONGEST + d] = max(row[StepColumn.LONGEST + d], piece.longest)
     for end in (piece.low, piece.high):
         height = _height(poses, a + 1, d, end, x, y)
-        row[Sum.LOWEST] = min(row[Sum.LOWEST], height)
-        row[Sum.HIGHEST] = max(row[Sum.HIGHEST], height)
+        row[StepColumn.LOWEST] = min(row[StepColumn.LOWEST], height)
+        row[StepColumn.HIGHEST] = max(row[StepColumn.HIGHEST], height)
     return True
 
 

@@ -98,7 +98,7 @@ def _add_drive(spec: mujoco.MjSpec, name: str, axis: AxisTable, drive: Drive, st
             ctrlspec=_VELOCITY_INPUT,
         )
     if drive.lags:
-        # A servo that pushes along with the speed MuJoCo takes for one told by its damping ratio.
+        # MuJoCo takes a servo with a positive speed term for one given by its damping ratio.
         feedforward.biastype = mujoco.mjtBias.mjBIAS_AFFINE
         feedforward.biasprm[2] = along
 

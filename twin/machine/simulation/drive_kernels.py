@@ -23,7 +23,7 @@ class Drives(NamedTuple):
         acceleration_feedforward: Force that is added in advance per commanded acceleration.
         trail: How long an axis that the integrator has settled trails its setpoint [s].
         speed_bulge: What the motor's speed is higher between samples than at them, on average, per
-            commanded acceleration [s]: the speed that it is told stands still over a step.
+            commanded acceleration [s]: the commanded speed is constant over a step.
         limit: Of the force [N or N m].
         constant: Force from outside that never changes [N or N m].
         velocity_input: Control that tells the drive its velocity.

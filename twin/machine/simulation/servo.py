@@ -161,7 +161,7 @@ class Servo:
         return Samples(chunk, followed.position, followed.velocity, followed.force)
 
     def _came_to(self, state: FloatArray) -> None:
-        """Stand in a state that was stepped to; refuse what MuJoCo warned of on the way."""
+        """Take over a state that was stepped to; refuse what MuJoCo warned of meanwhile."""
         if any(self._warned.tolist()):
             self._refuse_warnings()
         self._state = state

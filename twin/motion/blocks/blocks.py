@@ -2,6 +2,7 @@
 
 import dataclasses
 from collections.abc import Iterable, Iterator
+from typing import NamedTuple
 
 import numpy as np
 
@@ -63,6 +64,24 @@ JOIN_TOLERANCE = 1e-6
 BoolArray = np.ndarray[tuple[int], np.dtype[np.bool_]]
 
 
+class BlockLimits(NamedTuple):
+    """What the program asks of n blocks.
+
+    Attributes:
+        velocity: Highest v, shape (n,).
+        acceleration: Highest a, shape (n,).
+        deceleration: Highest -a, shape (n,).
+        parameter_scale: Path parameter per what the feed counts, shape (n,).
+        rotary_alone: Whether only rotary axes move, shape (n,).
+    """
+
+    velocity: FloatArray
+    acceleration: FloatArray
+    deceleration: FloatArray
+    parameter_scale: FloatArray
+    rotary_alone: BoolArray
+
+
 @dataclasses.dataclass(frozen=True, slots=True)
 class Blocks(Columns):
     """A run of n blocks, as columns. A dwell is a block without length.
@@ -96,6 +115,14 @@ class Blocks(Columns):
     tolerance: FloatArray
     pause: FloatArray
     geometry: Geometry
+
+    def limits(self, largest_override: float) -> BlockLimits:
+        """What the program asks of them, up to a factor of the feeds."""
+        velocity = self.feed * self.parameter_scale
+        return BlockLimits(
+            velocity * np.where(self.rapid, 1.0, largest_override),
+            self.acceleration, self.deceleration, self.parameter_scale, self.rotary_alone,
+        )  # fmt: skip
 
 
 class BlocksOfChunks(PipelineStage[Chunk, Blocks]):

@@ -138,7 +138,7 @@ def _find_choices(blocks: BlockMotion, corners: Corners, machine: MachineLimits)
             continue
         if corners.width[i] > 0.0:
             choices.velocity[i] = rounding_velocity(corners, i, machine)
-            if choices.velocity[i] >= min(blocks.velocity[i - 1], blocks.velocity[i]):
+            if choices.velocity[i] >= min(blocks.limits.velocity[i - 1], blocks.limits.velocity[i]):
                 continue
         before = after if known == i - 1 else block_limits(blocks, i - 1, machine)
         known, after = i, block_limits(blocks, i, machine)
@@ -218,7 +218,9 @@ def _time_of_block(
         width, next_width, rounded = width * length / rounded, next_width * length / rounded, length
     time = slower * (width / u if width > 0.0 else 0.0)
     time += slower * (next_width / v if next_width > 0.0 else 0.0)
-    turns = abs(blocks.curves.angle[i]) >= LEAST_TURN and limits.velocity < blocks.velocity[i]
+    turns = (
+        abs(blocks.curves.angle[i]) >= LEAST_TURN and limits.velocity < blocks.limits.velocity[i]
+    )
     if turns and before == Passage.STOPPED and after == Passage.STOPPED:
         return RUN_SHARE * travel_time(length, 0.0, 0.0, limits)
     room = length - rounded

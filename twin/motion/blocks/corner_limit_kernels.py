@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from twin.compilation.kernel import array_arithmetic_kernel
-from twin.motion.blocks.blocks import BoolArray
+from twin.motion.blocks.blocks import BlockLimits, BoolArray
 from twin.motion.limits import MachineLimits
 from twin.motion.ramp_kernels import RampLimits
 from twin.nc.canonical import FloatArray, IntArray
@@ -22,21 +22,12 @@ class BlockMotion(NamedTuple):
     Attributes:
         move: Number of the move in the whole program, shape (n,).
         length: In path parameter x, 0 for dwells, shape (n,).
-        velocity: Highest v that is asked for, shape (n,).
-        acceleration: Highest a, shape (n,).
-        deceleration: Highest -a, shape (n,).
-        parameter_scale: Path parameter per what the feed counts, shape (n,).
-        rotary_alone: Whether only rotary axes move, shape (n,).
     """
 
     move: IntArray
     curves: Curves
     length: FloatArray
-    velocity: FloatArray
-    acceleration: FloatArray
-    deceleration: FloatArray
-    parameter_scale: FloatArray
-    rotary_alone: BoolArray
+    limits: BlockLimits
 
 
 class Corners(NamedTuple):
@@ -62,10 +53,11 @@ class Corners(NamedTuple):
 @array_arithmetic_kernel
 def block_limits(blocks: BlockMotion, i: int, machine: MachineLimits) -> RampLimits:
     """What a block allows along the path; of an arc, what its curvature leaves at any place."""
-    scale, rotary = blocks.parameter_scale[i], blocks.rotary_alone[i]
+    asked = blocks.limits
+    scale, rotary = asked.parameter_scale[i], asked.rotary_alone[i]
     acceleration = scale * (machine.path[2] if rotary else machine.path[0])
     jerk = scale * (machine.path[3] if rotary else machine.path[1])
-    velocity = blocks.velocity[i]
+    velocity = asked.velocity[i]
     per_length = 1.0 / blocks.length[i]
     turn = abs(blocks.curves.angle[i]) * per_length
     curve, bends = is_curve(blocks.curves.bend, i), blocks.curves.bend
@@ -92,8 +84,8 @@ def block_limits(blocks: BlockMotion, i: int, machine: MachineLimits) -> RampLim
             jerk = min(jerk, machine.jerk[axis] / slope)
     if turn > 0.0:
         jerk *= CURVE_SHARE
-    speeding = min(acceleration, scale * blocks.acceleration[i])
-    braking = min(acceleration, scale * blocks.deceleration[i])
+    speeding = min(acceleration, scale * asked.acceleration[i])
+    braking = min(acceleration, scale * asked.deceleration[i])
     return RampLimits(velocity, speeding, braking, jerk)
 
 

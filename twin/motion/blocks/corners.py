@@ -62,8 +62,7 @@ class Borders:
 def find_borders(blocks: Blocks, limits: MotionLimits, largest_override: float = 1.0) -> Borders:
     """Decide how each border is passed; the first block's border counts as a stop."""
     shapes, axes = blocks.geometry, len(limits)
-    wanted = blocks.feed * blocks.parameter_scale
-    wanted = wanted * np.where(blocks.rapid, 1.0, largest_override)
+    asked = blocks.limits(largest_override)
     tangent_step, curvature_step = border_steps(shapes.curves(), blocks.length)
     corner = blocks.corner.copy()
     corner[0] = Corner.EXACT_STOP
@@ -76,10 +75,7 @@ def find_borders(blocks: Blocks, limits: MotionLimits, largest_override: float =
         place = np.append(0.0, np.cumsum(blocks.length))
         width = find_widths(place, rounded, *shares)
         stops, overlap = choose_stops(
-            BlockMotion(
-                blocks.move, shapes.curves(), blocks.length, wanted, blocks.acceleration, blocks.deceleration, blocks.parameter_scale,
-                blocks.rotary_alone,
-            ),
+            BlockMotion(blocks.move, shapes.curves(), blocks.length, asked),
             Corners(tangent_step, curvature_step, rounded, width, tolerance, further),
             limits.arrays(),
         )  # fmt: skip
@@ -94,9 +90,8 @@ def find_borders(blocks: Blocks, limits: MotionLimits, largest_override: float =
     )  # fmt: skip
     if np.any(corner == Corner.EXACT_PATH):
         # What is asked for bounds the velocity beside a knee in any case.
-        entry[1:] = np.where(
-            entry[1:] < np.inf, np.minimum(entry[1:], np.minimum(wanted[:-1], wanted[1:])), np.inf
-        )
+        slower = np.minimum(asked.velocity[:-1], asked.velocity[1:])
+        entry[1:] = np.where(entry[1:] < np.inf, np.minimum(entry[1:], slower), np.inf)
         _slow_close_knees(blocks, entry, tangent_step, width, limits)
     return Borders(tangent_step, curvature_step, width, entry, overlap)
 

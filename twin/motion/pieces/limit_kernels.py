@@ -1,12 +1,11 @@
 """How fast pieces may be driven, from the bounds of the path's derivatives along them."""
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
 from twin.compilation.kernel import arithmetic_kernel, array_arithmetic_kernel, array_kernel, kernel
-from twin.motion.blocks.blocks import BoolArray
+from twin.motion.blocks.blocks import BlockLimits, BoolArray
 from twin.motion.limits import MachineLimits
 from twin.motion.pieces.bound_kernels import DerivativeBounds
 from twin.motion.pieces.reachable_velocity_kernels import Along, lower_to_reachable
@@ -22,24 +21,6 @@ acceleration."""
 
 CURVE_JERK_SHARES = ((1.0, CURVE_JERK_SHARE), (3.0, 0.8), (10.0, 0.9))
 """By turns that the path goes round without a step: what of an axis's jerk a curve may use."""
-
-
-class BlockLimits(NamedTuple):
-    """What the program asks of m blocks.
-
-    Attributes:
-        velocity: Highest v, shape (m,).
-        acceleration: Highest a, shape (m,).
-        deceleration: Highest -a, shape (m,).
-        parameter_scale: Path parameter per what the feed counts, shape (m,).
-        rotary_alone: Whether only rotary axes move, shape (m,).
-    """
-
-    velocity: FloatArray
-    acceleration: FloatArray
-    deceleration: FloatArray
-    parameter_scale: FloatArray
-    rotary_alone: BoolArray
 
 
 @array_kernel

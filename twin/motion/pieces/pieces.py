@@ -27,7 +27,7 @@ from twin.motion.blocks.corners import CONTEXT, VIEW, Borders
 from twin.motion.limits import MotionLimits
 from twin.motion.pieces.bound_kernels import bound_derivatives
 from twin.motion.pieces.cut_kernels import cut_blocks, place_pieces
-from twin.motion.pieces.limit_kernels import BlockLimits, curve_shares, piece_limits
+from twin.motion.pieces.limit_kernels import curve_shares, piece_limits
 from twin.nc.canonical import Chunk, FloatArray, IntArray
 from twin.toolpath.geometry import Geometry
 
@@ -116,14 +116,8 @@ def cut(
     scale, begin, entry, overlap = place_pieces(
         blocks.length, blocks.move, borders.entry, borders.overlap, owner, offset
     )
-    feed = blocks.feed * blocks.parameter_scale
-    wanted = feed * np.where(blocks.rapid, 1.0, largest_override)
     velocity, acceleration, deceleration, jerk = piece_limits(
-        BlockLimits(
-            wanted, blocks.acceleration, blocks.deceleration, blocks.parameter_scale,
-            blocks.rotary_alone,
-        ),
-        owner, length, _ceilings(surroundings, entry),
+        blocks.limits(largest_override), owner, length, _ceilings(surroundings, entry),
         bound_derivatives(shapes.curves(), owner, begin, scale, length, rounding),
         limits.arrays(), curve_shares(borders.tangent_step, borders.curvature_step, borders.entry, shapes.angle),
     )  # fmt: skip
@@ -141,7 +135,7 @@ def cut(
         fraction_per_length=scale[due],
         length=length[due],
         rapid=blocks.rapid.take(owner),
-        feed=feed.take(owner),
+        feed=(blocks.feed * blocks.parameter_scale).take(owner),
         velocity=velocity[due],
         acceleration=acceleration[due],
         deceleration=deceleration[due],

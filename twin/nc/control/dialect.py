@@ -20,7 +20,7 @@ class JobKey(enum.StrEnum):
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Decision:
-    """What the project decided where the control's documents are silent.
+    """A decision where the control's documents are silent.
 
     Attributes:
         example: Name of the program that shows it, among the tests' golden files.

@@ -28,7 +28,6 @@ class Executor:
     """Runs blocks of a dialect on a control."""
 
     def __init__(self, dialect: Dialect, settings: ControlSettings, source: Source) -> None:
-        """A control that is before the first block of a program."""
         self.dialect = dialect
         modal, letters = dialect.codes.new_modal(), dialect.words.axes
         self.control = control = Control(

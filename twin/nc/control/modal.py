@@ -69,7 +69,6 @@ class ActiveCodes:
     """The number of the G code in force in each modal group."""
 
     def __init__(self, groups: Iterable[str]) -> None:
-        """None is in force yet."""
         self._codes = dict.fromkeys(groups, math.nan)
 
     def get(self, group: str, default: float = math.nan) -> float:

@@ -23,7 +23,7 @@ _CACHED_LINES = 10_000
 
 
 class FoundInText(dict[Key, Found]):
-    """What was found in a program's text, which does not change: whoever looks again finds the same."""
+    """What was found in a program's text, which does not change."""
 
 
 @dataclasses.dataclass(slots=True)

@@ -22,7 +22,7 @@ def is_work_offset(name: str) -> bool:
 
 
 class Consulted(Mapping[str, V]):
-    """Values by name that know which of them nobody has asked for."""
+    """Values by name that record which of them were read."""
 
     def __init__(self, values: Mapping[str, V]) -> None:
         self._values = dict(values)
@@ -124,7 +124,7 @@ class ControlSettings:
     """``fagor8070``, ``linuxcnc``: the sign of an absolute rotary target is the direction of rotation."""
 
     rollover: Literal["shorter", "sign"] | None = None
-    """``fanuc``: absolute rotary targets are those of a turn, by the shorter way or that of their sign; None: as written."""
+    """``fanuc``: absolute rotary targets are those of a turn, by the shorter path or in the direction of their sign; None: as written."""
 
     axis_words: Mapping[str, str | None] = dataclasses.field(default_factory=dict)
     """Words of axes that the machine lacks: the axis that each is for, or None where it is left out while it

@@ -1,4 +1,4 @@
-"""Files that no dialect here can read: what each looks to be, and what to do with it.
+"""Files that no dialect here can read: their likely kind, and what to do with them.
 
 ``foreign.toml`` lists them. Libraries that tell files by their first bytes (libmagic, puremagic) or languages by
 files' names (Pygments) know none of the controls, and take what NC programs end in for other things: ``.nc`` for

@@ -72,7 +72,7 @@ def refused(
 
 
 def flow_function(meaning: str, action: Action, group: str = "") -> MCode:
-    """An M code of the program's flow: it acts when the block has moved, and the machine hears nothing of it."""
+    """An M code of the program's flow: it acts when the block has moved, and is not reported to the machine."""
     return MCode(
         meaning=meaning, group=group, after_motion=True, action=action, silent=True, basis="manual"
     )

@@ -61,7 +61,7 @@ class Lead:
 
     @property
     def clockwise(self) -> bool:
-        """Which way an arc turns; on the contour as left of it."""
+        """Whether the arc turns clockwise; on the contour as left of it."""
         return (self.size < 0.0) is (self.side >= 0.0)
 
 

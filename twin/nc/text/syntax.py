@@ -134,7 +134,7 @@ class Language(Protocol):
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Mark:
-    """Something that programs of this dialect hold, and of few others.
+    """A mark of a dialect: what its programs contain, and few others.
 
     Attributes:
         pattern: Regular expression, searched line by line without regard to case.

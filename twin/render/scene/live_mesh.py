@@ -92,9 +92,14 @@ class LiveMesh:
         self._vertices[:] = MM * vertices
         self._normals[:] = normals.reshape(-1, 3)
 
-    def put_faces(self, faces: IntArray) -> None:
-        """Change the faces, shape (m, 3); one with equal corners is not seen."""
-        self._faces[:] = faces
+    def put_faces(self, faces: IntArray, texels: IntArray) -> None:
+        """Change the faces; one with equal corners is not seen.
+
+        Args:
+            faces: Shape (m, 3).
+            texels: Vertices whose places in the texture their corners have, shape (m, 3).
+        """
+        self._faces[:], self._face_texels[:] = faces, texels
 
     def fill(
         self, vertices: FloatArray, faces: IntArray, normals: FloatArray, texels: IntArray

@@ -16,7 +16,7 @@ WALL_RADIUS = 3
 
 
 def corner_normals(
-    heights: FloatArray, rows: slice, columns: slice, spacing: float, corner: FloatArray,
+    heights: FloatArray, rows: slice, columns: slice, spacing: float, faces: FloatArray,
     corners: IntArray,
 ) -> FloatArray:  # fmt: skip
     """Normals for every corner of every face of a tile.
@@ -26,13 +26,12 @@ def corner_normals(
         rows: The tile's rows of the mesh.
         columns: The tile's columns of the mesh.
         spacing: Between vertices [mm].
-        corner: Corners of the tile's faces, shape (m, 3, 3) [mm].
-        corners: Their numbers within the tile, shape (m, 3).
+        faces: Normals of the tile's faces, shape (m, 3).
+        corners: Numbers of their corners within the tile, shape (m, 3).
 
     Returns:
         Shape (m, 3, 3).
     """
-    faces = face_normals(corner)
     slope_x = _gentler(np.diff(heights[rows], axis=1), 1)[:, columns]
     slope_y = _gentler(np.diff(heights[:, columns], axis=0), 0)[rows]
     smooth = np.stack([-slope_x / spacing, -slope_y / spacing, np.ones_like(slope_x)], -1)

@@ -13,17 +13,26 @@ import numpy.typing as npt
 
 from twin.cutting.height_map_material import HeightMapMaterial
 from twin.cutting.heights.colours import RAW_RGB
-from twin.cutting.heights.surface_mesh import SurfaceMesh, open_edges, surface_mesh
+from twin.cutting.heights.outline import BoolArray
+from twin.cutting.heights.surface_mesh import (
+    SurfaceMesh,
+    open_edges,
+    surface_faces,
+    surface_mesh,
+)
 from twin.cutting.heights.sweeping import Rectangle, union
 from twin.nc.canonical import FloatArray, IntArray
 from twin.render.drawing.canvas import Canvas
 from twin.render.scene.live_mesh import LiveMesh, add_live_mesh
 from twin.render.scene.placement import Placement
-from twin.render.scene.shading import corner_normals
+from twin.render.scene.shading import corner_normals, face_normals
 from twin.render.scene.stock_texture import MATERIAL, StockTexture
 
 TILE = 24
 """Squares along a tile's side."""
+
+STEEP = 0.5
+"""Cosine with the vertical below which a face is a wall, all of which looks as its foot."""
 
 SIDE = "stock_side"
 FLAT_FACES = np.array([[0, 1, 2], [0, 2, 3]])
@@ -36,13 +45,13 @@ class _Tile:
     Attributes:
         rows: Rows of the mesh, borders included.
         columns: Columns of the mesh, borders included.
-        corners: Vertices of the faces, numbered within the tile, shape (n, 3).
+        patches: Which of its squares belong to the blank.
         whole: Whether every square of it belongs to the blank.
     """
 
     rows: slice
     columns: slice
-    corners: IntArray
+    patches: BoolArray
     whole: bool
     name: str
 
@@ -53,7 +62,7 @@ class _Tile:
 
     @property
     def ends(self) -> list[int]:
-        """Its four corners, counter-clockwise from above, numbered as ``corners`` are."""
+        """Its four corners, counter-clockwise from above, numbered as its vertices are."""
         width = self.columns.stop - self.columns.start
         last = (self.rows.stop - self.rows.start) * width - 1
         return [0, width - 1, last, last - width + 1]
@@ -79,7 +88,7 @@ class StockSurface:
         self._texture = texture
         self._step = step
         self._mesh = surface_mesh(self._map, step)
-        self._look()
+        self._vertices = self._mesh.vertices(self._map)
         self._tiles = _tiles(self._mesh)
         self._edges = open_edges(self._mesh.patches)
         self._side_normals = _side_normals(self._mesh, self._edges)
@@ -95,7 +104,7 @@ class StockSurface:
         texels = self._texture.texels(self._mesh.x, self._mesh.y)
         for tile in self._tiles:
             block = texels[tile.rows, tile.columns].reshape(-1, 2)
-            add_live_mesh(spec, tile.name, MATERIAL, block, tile.corners)
+            add_live_mesh(spec, tile.name, MATERIAL, block, self._faces(tile))
             if tile.whole:
                 add_live_mesh(spec, tile.flat_name, MATERIAL, block[tile.ends], FLAT_FACES)
         quads = np.arange(4 * len(self._edges)).reshape(-1, 4)
@@ -123,10 +132,11 @@ class StockSurface:
         row, row_end, column, column_end = changed
         if row >= row_end:
             return
-        first_row, last_row = row // self._step, row_end // self._step + 2
-        first_column, last_column = column // self._step, column_end // self._step + 2
-        before = self._z.ravel()[self._edges]
-        self._look()
+        # Walls are looked for so far around what was cut.
+        first_row, last_row = row // self._step - 1, row_end // self._step + 3
+        first_column, last_column = column // self._step - 1, column_end // self._step + 3
+        before = self._side_vertices()
+        self._vertices = self._mesh.vertices(self._map)
         for tile in self._tiles:
             if (
                 tile.rows.stop >= first_row
@@ -135,24 +145,22 @@ class StockSurface:
                 and tile.columns.start <= last_column
             ):
                 canvas.upload_mesh(self._set_tile(tile))
-        if not np.array_equal(self._z.ravel()[self._edges], before):
+        if not np.array_equal(self._side_vertices(), before):
             canvas.upload_mesh(self._set_side())
         self._texture.update(canvas, changed)
 
-    def _look(self) -> None:
-        """Take over the heights of the vertices and where they lie."""
-        self._z = self._mesh.heights(self._map)
-        self._x, self._y = self._mesh.places(self._map)
-
-    def _vertices(self, tile: _Tile) -> FloatArray:
-        block = (tile.rows, tile.columns)
-        return np.stack([self._x[block], self._y[block], self._z[block]], -1).reshape(-1, 3)
+    def _faces(self, tile: _Tile) -> IntArray:
+        """Vertices of a tile's faces as they are now, numbered within it, shape (n, 3)."""
+        return surface_faces(tile.patches, self._vertices[tile.rows, tile.columns, 2])
 
     def _set_tile(self, tile: _Tile) -> int:
         """Bring one tile up to date; returns the mesh that is shown now."""
-        heights = self._z[tile.rows, tile.columns]
+        here = (tile.rows, tile.columns)
+        vertices = self._vertices[here].reshape(-1, 3)
+        heights = vertices[:, 2]
+        unmoved = np.stack([self._mesh.x[here].ravel(), self._mesh.y[here].ravel()], 1)
         level = tile.whole and float(np.ptp(heights)) == 0.0
-        vertices = self._vertices(tile)
+        level = level and np.array_equal(vertices[:, :2], unmoved)
         fine = self._meshes[tile.name]
         fine.show(not level)
         if tile.whole:
@@ -162,18 +170,23 @@ class StockSurface:
             flat = self._meshes[tile.flat_name]
             flat.put(vertices[tile.ends], np.tile([0.0, 0.0, 1.0], (6, 1)))
             return flat.id
-        corner = vertices[tile.corners]
+        faces = self._faces(tile)
+        corner = vertices[faces]
         solid = np.any(corner[..., 2] > self._map.bottom, axis=1)
-        fine.put_faces(np.where(solid[:, None], tile.corners, 0))
-        normals = corner_normals(
-            self._z, tile.rows, tile.columns, self._mesh.spacing, corner, tile.corners
-        )
+        upwards = face_normals(corner)
+        rise = corner[..., 2] - corner[..., 2].min(axis=1, keepdims=True)
+        foot = np.take_along_axis(faces, rise.argmin(axis=1)[:, None], axis=1)
+        above = rise > 0.5 * rise.max(axis=1, keepdims=True)
+        texels = np.where((upwards[:, 2:] < STEEP) & above, foot, faces)
+        fine.put_faces(np.where(solid[:, None], faces, 0), texels)
+        spacing = self._step * self._map.cell
+        normals = corner_normals(self._vertices[..., 2], *here, spacing, upwards, faces)
         fine.put(vertices, normals)
         return fine.id
 
     def _side_vertices(self) -> FloatArray:
         start, end = self._edges.T
-        x, y, z = self._mesh.x.ravel(), self._mesh.y.ravel(), self._z.ravel()
+        x, y, z = np.moveaxis(self._vertices.reshape(-1, 3), 1, 0)
         bottom = np.full(len(start), self._map.bottom)
         corners = [
             np.stack([x[start], y[start], z[start]], 1),
@@ -198,15 +211,11 @@ def _tiles(grid: SurfaceMesh) -> list[_Tile]:
             if not patches.any():
                 continue
             height, width = patches.shape
-            inner_row, inner_column = np.nonzero(patches)
-            a = inner_row * (width + 1) + inner_column
-            b, c, d = a + 1, a + width + 2, a + width + 1
-            corners = np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)])
             tiles.append(
                 _Tile(
                     slice(row, row + height + 1),
                     slice(column, column + width + 1),
-                    corners,
+                    patches,
                     bool(patches.all()),
                     f"{MATERIAL}_{row}_{column}",
                 )

@@ -29,10 +29,6 @@ SHADE_DEPTH = 0.5
 """Share of the light that a place loses which lies as deep as it is far from the rim."""
 
 
-STEEP = 1.0
-"""Slope from which a square of the drawn mesh is a wall."""
-
-
 def _texel_step(cells: int, mesh_step: int) -> int:
     """Cells from one texel to the next: a divisor of the mesh's step, so that vertices have one."""
     fewest = max(1, -(-cells // MOST_TEXELS))
@@ -60,7 +56,6 @@ class StockTexture:
         self._marks = marks
         self._paint = paint
         self._step = _texel_step(max(height_map.heights.shape), mesh_step)
-        self._between = mesh_step // self._step
         self._rows, self._columns = height_map.heights[:: self._step, :: self._step].shape
         random = np.random.default_rng(1)
         self._grain = 1.0 + GRAIN * random.standard_normal((self._rows, self._columns))
@@ -125,36 +120,6 @@ class StockTexture:
             paint = self._paint[::step, ::step][rows, columns]
             colours = np.where(paint[..., 3:], paint[..., :3], colours)
         self._texels[rows, columns] = np.clip(colours, 0, 255).astype(np.uint8)
-        self._even_walls(rows, columns)
-
-    def _even_walls(self, rows: slice, columns: slice) -> None:
-        """Let walls fade from top to bottom, wherever between two vertices the step really is.
-
-        A wall is drawn as one slope from vertex to vertex; the texels between them would paint
-        its edge at another height in every square of the mesh.
-        """
-        between = self._between
-        if between == 1:
-            return
-        here = tuple(
-            slice(max(0, part.start // between - 1) * between, part.stop + between)
-            for part in (rows, columns)
-        )
-        vertices = self._texels[here][::between, ::between].astype(np.float64)
-        heights = self._map.heights[:: self._step, :: self._step][here][::between, ::between]
-        if min(heights.shape) < 2:
-            return
-        corners = np.stack([heights[i : len(heights) - 1 + i, j : heights.shape[1] - 1 + j]
-                            for i in (0, 1) for j in (0, 1)])  # fmt: skip
-        steep = np.ptp(corners, axis=0) > STEEP * between * self._step * self._map.cell
-        share = (np.arange(between) / between)[None, :, None, None]
-        for axis in (0, 1):
-            vertices = vertices.swapaxes(0, axis)
-            parts = vertices[:-1, None] * (1 - share) + vertices[1:, None] * share
-            vertices = parts.reshape(-1, *vertices.shape[1:]).swapaxes(0, axis)
-        walls = np.repeat(np.repeat(steep, between, axis=0), between, axis=1)
-        painted = self._texels[here][: walls.shape[0], : walls.shape[1]]
-        painted[walls] = vertices[walls].astype(np.uint8)
 
     def _marked(self, rows: slice, columns: slice) -> FloatArray:
         """Brightness that the cutter's marks give a machined surface."""

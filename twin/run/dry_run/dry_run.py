@@ -125,7 +125,7 @@ class DryRun:
 
 
 def interpret_all(preparation: Preparation, clock: StageClock) -> DryRun:
-    """Interpret a whole program, so that no error is met with the machine half-way.
+    """Interpret a whole program, so that no error is found in the middle of the motion.
 
     Raises:
         ProgramError: The program is wrong.

@@ -88,7 +88,7 @@ def chosen_dialect(
     """Tell the dialect of a raw program.
 
     Args:
-        settings: What its control is told about machine and job.
+        settings: What its control knows about machine and job.
         source: The program, where it was read already.
 
     Raises:

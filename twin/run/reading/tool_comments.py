@@ -74,7 +74,7 @@ class ToolComment(NamedTuple):
         kind: As ``ToolTable`` has it; empty: it is not stated.
         diameter: [mm]; None: it is not stated.
         corner: Radius of a bull-nose's corner [mm].
-        wear: Its contours are the path of its centre, so that D holds its wear alone; None: that is not told.
+        wear: Its contours are the path of its centre, so that D has only its wear; None: not known.
         name: By which the program calls it; empty: by its number.
         source: What says so, for people.
         length: That the program writes, into the control's table or a comment [mm]; None: it writes none.

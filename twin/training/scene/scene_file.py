@@ -176,7 +176,7 @@ class SceneFile(Table):
     part: PartTable | None = None
     """The part by which the condition ``finished`` is judged; none: the program's end is enough."""
     lesson: LessonTable | None = None
-    """Told on the score sheet of a scene that was handed in with less than all points."""
+    """Shown on the score sheet of a scene that was handed in with less than all points."""
     hints: tuple[Text, ...] = ()
     """Given one after the other when the operator asks for one."""
     hint_cost: Annotated[int, Field(ge=0)] = 1

@@ -315,12 +315,12 @@ class RoomApp:
         try:
             await self._tell(socket, page)
         except (WebSocketDisconnect, RuntimeError):
-            pass  # Gone; whoever hears it notices too.
+            pass  # The page is gone; the receiving task notices too.
         except TimeoutError:
             with contextlib.suppress(RuntimeError):
                 await socket.close(1008)
         except Exception:
-            # A page that is told nothing more must not look alive.
+            # A page that gets no more messages must not look alive.
             with contextlib.suppress(RuntimeError):
                 await socket.close(1011)
             raise

@@ -124,7 +124,7 @@ def surface(
 
 @arithmetic_kernel
 def _turned(nu: float, nv: float, nd: float, d: int, tool: int) -> int:
-    """A normal told along a direction and the two across it, packed."""
+    """A normal with components along a direction and the two across it, packed."""
     if d == 0:
         return packed(nd, nu, nv, tool)
     if d == 1:

@@ -169,7 +169,7 @@ def _cross(
 ) -> None:
     """Find where material ends, or begins, on the edge from a node along a direction.
 
-    Lines of other directions have told which nodes are inside; where a surface goes all but through a node,
+    Lines of other directions have shown which nodes are inside; where a surface goes all but through a node,
     this one may see its end just beyond the edge, and the nearest place on the edge is taken.
     """
     u, v = (d + 1) % 3, (d + 2) % 3

@@ -57,7 +57,7 @@ def prepare(control: Control) -> None:
 
 
 def before_motion(control: Control, _rapid: bool) -> None:
-    """What holds for every motion block: slopes, and the shortest way of modulo axes."""
+    """What holds for every motion block: slopes, and the shortest path of modulo axes."""
     _refuse_slopes(control)
     turn_shortest(control)
     if any(memory_of(control).length_ramp):

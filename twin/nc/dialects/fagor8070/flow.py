@@ -8,6 +8,7 @@ from twin.nc.control.constructs import Construct, Structure
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.subroutines import lines_around
+from twin.nc.iso.structured_flow import StructuredFlow
 from twin.nc.text.blocks import Location, Statement
 from twin.nc.text.expressions.expressions import Expression, Variable
 
@@ -45,14 +46,13 @@ def _structure(control: Control) -> Structure:
     return memory.structure
 
 
-def construct_of(control: Control, statement: Statement) -> Construct:
-    """The construct that a statement of the block belongs to."""
-    construct = _structure(control).by_line.get(control.block.line - 1)
-    if construct is None or construct.end is None:
-        message = f"{statement.keyword} has no counterpart"
-        hint = "every $IF needs its $ENDIF, every loop its end"
-        control.fail("open-structure", message, statement, hint)
-    return construct
+def value_of(control: Control, statement: Statement) -> float:
+    """The value behind a keyword."""
+    column = statement.text_column
+    return control.compute(control.statements.expression(statement.text, column), column)
+
+
+_FLOW = StructuredFlow(_structure, "every $IF needs its $ENDIF, every loop its end", value_of)
 
 
 def _jump_behind_condition(
@@ -86,10 +86,7 @@ def destination(control: Control, statement: Statement) -> Location:
     label = int(match[1]) if match[1] else match[2].upper()
     span = statement.text_column, len(statement.text)
     place = control.program_counter.find_label(label, span, "$GOTO", lines_around(control))
-    structure = _structure(control)
-    here = structure.around(control.block.line - 1)
-    if any(construct not in here for construct in structure.around(place.line)):
-        control.fail("jump-into-structure", "a jump must not lead into a structure", statement)
+    _FLOW.refuse_jump_inside(control, statement, place)
     return place
 
 
@@ -106,7 +103,7 @@ def _if(control: Control, statement: Statement) -> None:
         if holds:
             control.jump(destination(control, jump))
         return
-    construct = construct_of(control, statement)
+    construct = _FLOW.construct_of(control, statement)
     if holds:
         control.jump(Location(control.block.line, 0))
         return
@@ -117,38 +114,9 @@ def _if(control: Control, statement: Statement) -> None:
     control.jump(construct.behind)
 
 
-def _else(control: Control, statement: Statement) -> None:
-    """$ELSEIF, $ELSE reached from the branch before: go on behind $ENDIF."""
-    control.jump(construct_of(control, statement).behind)
-
-
-def _nothing(control: Control, statement: Statement) -> None:
-    """$DO, $ENDIF, $ENDSWITCH: only mark a place, which must have its counterpart."""
-    construct_of(control, statement)
-
-
-def _while(control: Control, statement: Statement) -> None:
-    """$WHILE: run the body as long as the condition holds."""
-    construct = construct_of(control, statement)
-    if not value_of(control, statement):
-        control.jump(construct.behind)
-
-
-def _again(control: Control, statement: Statement) -> None:
-    """$ENDWHILE: look at the condition again."""
-    control.jump(Location(construct_of(control, statement).begin, 0))
-
-
-def _end_do(control: Control, statement: Statement) -> None:
-    """$ENDDO condition: run the body again as long as it holds."""
-    construct = construct_of(control, statement)
-    if value_of(control, statement):
-        control.jump(Location(construct.begin + 1, 0))
-
-
 def _for(control: Control, statement: Statement) -> None:
     """$FOR P1 = first, last, step."""
-    construct = construct_of(control, statement)
+    construct = _FLOW.construct_of(control, statement)
     name, first, last, step = _for_values(control, statement, statement)
     control.variables.write(name, first)
     if (first - last) * step > 0.0:
@@ -157,7 +125,7 @@ def _for(control: Control, statement: Statement) -> None:
 
 def _end_for(control: Control, statement: Statement) -> None:
     """$ENDFOR: step on, and run the body again until the last value is passed."""
-    construct = construct_of(control, statement)
+    construct = _FLOW.construct_of(control, statement)
     values = _for_values(control, control.statements.of_line(construct.begin), statement)
     name, _, last, step = values
     value = control.compute(Expression("", Variable(name)), 0) + step
@@ -190,7 +158,7 @@ def _for_values(
 
 def _switch(control: Control, statement: Statement) -> None:
     """$SWITCH: go to the $CASE with the same value, else to $DEFAULT."""
-    construct = construct_of(control, statement)
+    construct = _FLOW.construct_of(control, statement)
     value = value_of(control, statement)
     for branch in construct.branches:
         is_default = branch.keyword == "$DEFAULT"
@@ -222,25 +190,19 @@ def _go_to(control: Control, statement: Statement) -> None:
     control.jump(destination(control, statement))
 
 
-def value_of(control: Control, statement: Statement) -> float:
-    """The value behind a keyword."""
-    column = statement.text_column
-    return control.compute(control.statements.expression(statement.text, column), column)
-
-
 STATEMENTS: dict[str, StatementAction] = {
     "$IF": _if,
-    "$ELSEIF": _else,
-    "$ELSE": _else,
-    "$ENDIF": _nothing,
-    "$WHILE": _while,
-    "$ENDWHILE": _again,
-    "$DO": _nothing,
-    "$ENDDO": _end_do,
+    "$ELSEIF": _FLOW.leave,
+    "$ELSE": _FLOW.leave,
+    "$ENDIF": _FLOW.mark,
+    "$WHILE": _FLOW.run_while,
+    "$ENDWHILE": _FLOW.go_back,
+    "$DO": _FLOW.mark,
+    "$ENDDO": _FLOW.repeat_while,
     "$FOR": _for,
     "$ENDFOR": _end_for,
     "$SWITCH": _switch,
-    "$ENDSWITCH": _nothing,
+    "$ENDSWITCH": _FLOW.mark,
     "$BREAK": _break,
     "$CONTINUE": _continue,
     "$GOTO": _go_to,

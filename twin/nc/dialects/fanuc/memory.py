@@ -255,7 +255,7 @@ def memory_of(control: Control) -> FanucMemory:
 
 
 def acts_on_lines(control: Control) -> bool:
-    """Polar coordinates, a scale, a modal call or a cylinder in force, F lost: plain blocks heed them."""
+    """Polar coordinates, a scale, a modal call or a cylinder in force, F lost: plain blocks depend on them."""
     memory = memory_of(control)
     if memory.length_cancelled or memory.overrules_cycles or control.settings.rollover is not None:
         return True

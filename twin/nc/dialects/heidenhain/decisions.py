@@ -1,4 +1,4 @@
-"""Where HEIDENHAIN's manuals are silent, or were not to be had."""
+"""Decisions where HEIDENHAIN's manuals are silent, or not available."""
 
 from twin.nc.control.dialect import Decision
 

@@ -74,7 +74,7 @@ def reduce_rotary(control: Control, word: Word | None = None) -> None:
 
 
 def _go_shortest(shortest: bool) -> Action:
-    """M126, M127: rotary axes go the shorter way, or as written."""
+    """M126, M127: rotary axes take the shorter path, or go as written."""
 
     def action(control: Control) -> None:
         memory_of(control).shortest = shortest

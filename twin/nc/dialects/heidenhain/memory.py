@@ -100,7 +100,7 @@ class KlartextMemory:
         spatial: Of FUNCTION TCPM AXIS SPAT, the last angles A, B and C [deg]; None: they are axes.
         order: In which of these the program has put them into force.
         chamfered: The move whose end CHF cuts off, or None.
-        shortest: M126: rotary axes go the shorter way.
+        shortest: M126: rotary axes take the shorter path.
     """
 
     pole: dict[int, float] = dataclasses.field(default_factory=dict)

@@ -1,4 +1,4 @@
-"""Which way a rotary axis turns to an absolute angle, where a control does not go there as it is written.
+"""Direction in which a rotary axis turns to an absolute angle, where a control does not go there as written.
 
 The axis itself does not move for it: its start is given other coordinates, by whole turns, so that the plain difference is
 the way that the control goes.

@@ -69,7 +69,6 @@ class Compensation:
         happen: Callable[[Event], None],
         report: MoveReport,
     ) -> None:
-        """Compensation that is off."""
         self._drive = drive
         self._happen = happen
         self._report = report

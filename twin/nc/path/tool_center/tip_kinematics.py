@@ -33,7 +33,7 @@ class TipKinematics(NamedTuple):
         return tool_point(self.chain, joints, self.length_difference) - self.zero[:3]
 
     def direction(self, axes: FloatArray) -> FloatArray:
-        """Which way the tool points from its tip to the spindle, seen from the part, shapes (n, k) and (n, 3)."""
+        """Direction from the tip of the tool to the spindle, seen from the part, shapes (n, k) and (n, 3)."""
         return tool_direction(self.chain, axes + self.counted_zero)
 
     def linear_axes_for(self, tip: PathMotion, axes: PathMotion) -> PathMotion:

@@ -106,7 +106,7 @@ class ToolCenter:
         return [*self._kinematics.tip(np.array([axes]))[0].tolist(), *axes[3:]]
 
     def direction(self, axes: list[float]) -> FloatArray:
-        """Which way the tool points from its tip to the spindle, seen from the part, shape (3,)."""
+        """Direction from the tip of the tool to the spindle, seen from the part, shape (3,)."""
         return self._kinematics.direction(np.array([axes]))[0]
 
     def pointing(

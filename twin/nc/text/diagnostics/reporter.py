@@ -69,7 +69,7 @@ class Reporter:
             self.warn(code, message, column, width, hint)
 
     def notice(self, of: str, message: str, column: int = 0, width: int = 1) -> None:
-        """Tell once of something that is passed over, and why nothing of the path is lost.
+        """Report once that something is ignored, and why nothing of the path is lost.
 
         It is no reason to refuse a program, also when warnings count as errors.
         """
@@ -80,7 +80,7 @@ class Reporter:
 
     @contextmanager
     def quietly(self) -> Iterator[Callable[[], bool]]:
-        """Look ahead: what is said within is not said; tells whether there was something to say."""
+        """Look ahead: diagnostics within are dropped; yields whether there were any."""
         line, said, count = self.line, set(self._said), len(self.warnings)
         try:
             yield lambda: len(self.warnings) > count

@@ -19,7 +19,7 @@ from twin.nc.iso.drilling.hole import (
 ADVANCE = 0.2
 """How far above its last depth a rapid return ends [mm]."""
 _ASIDE = {0: (0.0, 0.0), 1: (-1.0, 0.0), 2: (0.0, -1.0), 3: (1.0, 0.0), 4: (0.0, 1.0)}
-"""Which way the tool leaves the wall, by Q214."""
+"""Direction in which the tool leaves the wall, by Q214."""
 
 
 def heights(control: Control, given: CycleParameters) -> tuple[float, float, float, float]:

@@ -98,7 +98,7 @@ def _clear(control: Control, given: CycleParameters, outline: Outline) -> None:
 
 
 def _clockwise(given: CycleParameters) -> bool:
-    """Which way around a pocket: Q351 asks for climb milling with 1, and with 0 as well."""
+    """Direction around a pocket: Q351 asks for climb milling with 1, and with 0 as well."""
     return given.number(351, 1.0) < 0.0
 
 

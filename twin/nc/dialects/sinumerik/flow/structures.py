@@ -5,12 +5,13 @@ from collections.abc import Callable
 from typing import NoReturn
 
 from twin.nc.control.codes import StatementAction
-from twin.nc.control.constructs import Construct, Structure
+from twin.nc.control.constructs import Structure
 from twin.nc.control.control import Control
 from twin.nc.dialects.sinumerik.flow.programs import lines_around
 from twin.nc.dialects.sinumerik.memory import memory_of
 from twin.nc.dialects.sinumerik.variables.expressions import NAME
 from twin.nc.dialects.sinumerik.variables.variables import with_texts_compared, write_variable
+from twin.nc.iso.structured_flow import StructuredFlow
 from twin.nc.text.blocks import Location, Statement
 from twin.nc.text.expressions.expressions import (
     Expression,
@@ -52,19 +53,6 @@ def _structure(control: Control) -> Structure:
     return memory.structure
 
 
-def _construct_of(control: Control, statement: Statement) -> Construct:
-    """The construct that a statement belongs to."""
-    construct = _structure(control).by_line.get(control.block.line - 1)
-    if construct is None or construct.end is None:
-        message = f"{statement.keyword} has no counterpart"
-        hint = "every IF needs its ENDIF, every loop its end, each on a line of its own"
-        control.fail("open-structure", message, statement, hint)
-    if construct.depth > DEEPEST_CONSTRUCT:
-        message = f"more than {DEEPEST_CONSTRUCT} constructs within each other"
-        control.fail("structure", message, statement)
-    return construct
-
-
 def value_of(control: Control, statement: Statement) -> float:
     """The value behind a keyword."""
     return _condition(control, statement.text, statement.text_column)
@@ -73,6 +61,16 @@ def value_of(control: Control, statement: Statement) -> float:
 def _condition(control: Control, text: str, column: int) -> float:
     compared = with_texts_compared(control, text, column)
     return control.compute(control.statements.expression(compared, column), column)
+
+
+_FLOW = StructuredFlow(
+    _structure,
+    "every IF needs its ENDIF, every loop its end, each on a line of its own",
+    value_of,
+    DEEPEST_CONSTRUCT,
+)
+begin_repeat = _FLOW.mark
+"""REPEAT alone on its line begins a loop that UNTIL ends."""
 
 
 # --- conditions and loops
@@ -92,44 +90,12 @@ def _if(control: Control, statement: Statement) -> None:
                 Statement(jump[1].upper(), statement.text[jump.end() :], at, column + jump.end()),
             )
         return
-    construct = _construct_of(control, statement)
+    construct = _FLOW.construct_of(control, statement)
     if not holds:
         if construct.branches:
             control.jump(Location(construct.branches[0].line + 1, 0))
         else:
             control.jump(construct.behind)
-
-
-def _leave(control: Control, statement: Statement) -> None:
-    """ELSE reached from the branch before: go on behind ENDIF."""
-    control.jump(_construct_of(control, statement).behind)
-
-
-def _nothing(control: Control, statement: Statement) -> None:
-    """ENDIF, LOOP: only mark a place, which must have its counterpart."""
-    _construct_of(control, statement)
-
-
-def _while(control: Control, statement: Statement) -> None:
-    construct = _construct_of(control, statement)
-    if not value_of(control, statement):
-        control.jump(construct.behind)
-
-
-def _again(control: Control, statement: Statement) -> None:
-    """ENDWHILE, ENDLOOP: to the beginning."""
-    control.jump(Location(_construct_of(control, statement).begin, 0))
-
-
-def until(control: Control, statement: Statement) -> None:
-    """UNTIL condition: run the body again as long as it does not hold."""
-    construct = _construct_of(control, statement)
-    if not value_of(control, statement):
-        control.jump(Location(construct.begin + 1, 0))
-
-
-begin_repeat = _nothing
-"""REPEAT alone on its line begins a loop that UNTIL ends."""
 
 
 def _for_parts(control: Control, statement: Statement) -> tuple[Tree, Expression, Expression, int]:
@@ -164,7 +130,7 @@ def _write(control: Control, tree: Tree, value: float, column: int) -> None:
 
 def _for(control: Control, statement: Statement) -> None:
     """FOR R1=1 TO 5: the body runs for each, counting up by 1."""
-    construct = _construct_of(control, statement)
+    construct = _FLOW.construct_of(control, statement)
     tree, first, last, column = _for_parts(control, statement)
     value = control.compute(first, column)
     _write(control, tree, value, column)
@@ -173,7 +139,7 @@ def _for(control: Control, statement: Statement) -> None:
 
 
 def _end_for(control: Control, statement: Statement) -> None:
-    construct = _construct_of(control, statement)
+    construct = _FLOW.construct_of(control, statement)
     begin = control.statements.of_line(construct.begin)
     tree, _, last, column = _for_parts(control, begin)
     value = control.compute(Expression("", tree), column) + 1.0
@@ -201,10 +167,7 @@ def go_to(control: Control, statement: Statement) -> None:
     place = find_label(control, statement, int(label[1]) if label[1] else label[2].upper())
     if place is None:
         return
-    here = _structure(control).around(control.block.line - 1)
-    if any(construct not in here for construct in _structure(control).around(place.line)):
-        message = "a jump must not lead into a structure"
-        control.fail("jump-into-structure", message, statement)
+    _FLOW.refuse_jump_inside(control, statement, place)
     control.jump(place)
 
 
@@ -268,15 +231,15 @@ def _case(control: Control, statement: Statement) -> None:
 
 STATEMENTS: dict[str, StatementAction] = {
     "IF": _if,
-    "ELSE": _leave,
-    "ENDIF": _nothing,
-    "WHILE": _while,
-    "ENDWHILE": _again,
+    "ELSE": _FLOW.leave,
+    "ENDIF": _FLOW.mark,
+    "WHILE": _FLOW.run_while,
+    "ENDWHILE": _FLOW.go_back,
     "FOR": _for,
     "ENDFOR": _end_for,
-    "LOOP": _nothing,
-    "ENDLOOP": _again,
-    "UNTIL": until,
+    "LOOP": _FLOW.mark,
+    "ENDLOOP": _FLOW.go_back,
+    "UNTIL": _FLOW.repeat_until,
     "CASE": _case,
     **dict.fromkeys(("GOTO", "GOTOF", "GOTOB", "GOTOC", "GOTOS"), go_to),
 }
