@@ -43,7 +43,8 @@ def motion() -> tuple[FloatArray, FloatArray, BoolArray]:
 
 def cut(kind: str, ends: list[int], *, tilts: bool) -> tuple[CutResult, bytes]:
     """What a tool cuts of the motion in chunks that end there."""
-    tool = ToolTable(number=1, kind=kind, diameter=3.0, flute=7.0, teeth=2, speed=6000.0)
+    fields = {"kind": kind, "diameter": 3.0, "flute": 7.0, "teeth": 2, "speed": 6000.0}
+    tool = ToolTable.model_validate({"number": 1, **fields})
     cutter = Cutter(STOCK, tool, FRAME, np.zeros(3), tilts=tilts, halts=True)
     way, line, rapid = motion()
     run = samples(way, line)

@@ -324,10 +324,8 @@ def test_what_the_machine_is_off_its_path_is_no_chip(samples: Motion) -> None:
 @pytest.mark.parametrize("kind", ["flat", "ball"])
 def test_a_finishing_pass_of_a_hundredth_is_no_air(samples: Motion, kind: str, tilts: bool) -> None:
     """By a machine that is 1 µm off its path; the same pass again is air."""
-    frame, tool = (
-        PartFrame(rotary=None, center=(0.0, 0.0)),
-        ToolTable(number=1, kind=kind, diameter=6.0),
-    )
+    frame = PartFrame(rotary=None, center=(0.0, 0.0))
+    tool = ToolTable.model_validate({"number": 1, "kind": kind, "diameter": 6.0})
     cutter = Cutter(plate(0.4), tool, frame, np.zeros(3), tilts=tilts)
     x, air = np.linspace(-60.0, 60.0, 3000), []
     for n, y in enumerate((20.0, 20.01, 20.01)):
