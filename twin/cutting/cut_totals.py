@@ -63,6 +63,7 @@ class CutTotals:
         self._note_means(self._pieces.add(alone, turn), tool)
         if self._material is None or not tool.speed:
             return np.zeros((len(path), 3))
+        self.force, self.power = self.force or 0.0, self.power or 0.0
         force = cutting_load(alone, tool, self._material).force
         return tool_force(stretches, alone.width(tool.diameter), force, tool, self._material)
 
