@@ -1,5 +1,6 @@
 """The package's form; the layers of its imports stand in ``pyproject.toml``, under ``tool.importlinter``."""
 
+import re
 import subprocess
 import sys
 from collections import Counter
@@ -37,6 +38,15 @@ def test_a_folder_is_seen_at_a_glance() -> None:
     modules = Counter(path.parent for path in PACKAGE.rglob("*.py"))
     crowded = {folder.name: count for folder, count in modules.items() if count > 16}
     assert not crowded, f"folders that should be split: {crowded}"
+
+
+def test_a_class_name_means_one_thing() -> None:
+    texts = (path.read_text(encoding="utf-8") for path in PACKAGE.rglob("*.py"))
+    names = Counter(
+        name for text in texts for name in re.findall(r"^ *class (\w+)", text, re.MULTILINE)
+    )
+    twice = sorted(name for name, count in names.items() if count > 1)
+    assert not twice, f"classes of one name in several files: {twice}"
 
 
 def test_no_two_files_of_tests_have_one_name() -> None:

@@ -23,7 +23,7 @@ require_extra("gym", "twin.gym")
 import gymnasium  # noqa: E402 - said by its name where it is missing
 
 LOWEST, HIGHEST = 0.1, 1.5
-"""Of the feed override: an agent that stops for ever never comes to an end."""
+"""Lowest feed override: at 0 an episode would never end."""
 SEEN = ("progress", "override", "speed", "contour", "following", "load")
 """What is seen after each step, each 0 where nothing is to be seen and 1 at its limit, cut off at 10: share of
 the program that is done; the override; speed of the tool by the fastest feed of the program; greatest contour

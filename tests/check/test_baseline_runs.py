@@ -75,3 +75,20 @@ def test_a_word_of_a_cycle_is_one_finding_at_its_line(job: Path):
 def test_a_lost_function_is_told_at_its_line(job: Path):
     write(job.parent, PROGRAM.replace("M3 S1000\n", ""))
     assert ("baseline-function", 3) in [each[:2] for each in found(job)]
+
+
+def test_comments_are_those_of_the_control(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    """Round brackets hold the values of a cycle here, and no comment: the changed line is found."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "p.toml").write_text('program = "p.mpf"\ndialect = "sinumerik"\n')
+    program = (
+        "G17 G90 G94 G71 ; head\nT1 M6\nS900 M3\nG0 X0 Y0 Z20\nF200\nMCALL CYCLE82(10,0,2,-4,,0.2)\n"
+        "X5 Y5\nX9 Y5\nMCALL\nM30\n"
+    )
+    (tmp_path / "p.mpf").write_text(program)
+    update = CheckSettings(baseline=Path("baselines"), update_baseline=True)
+    assert check_program(tmp_path / "p.toml", update).passed
+    (tmp_path / "p.mpf").write_text(program.replace("; head", " ; other\n"))
+    assert found(tmp_path / "p.toml") == []
+    (tmp_path / "p.mpf").write_text(program.replace("-4,", "-5,"))
+    assert [each[:2] for each in found(tmp_path / "p.toml") if each[1]] == [("baseline-path", 6)]

@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 
 from twin.check.dependents import dependents
-from twin.check.discovery import baselines_without_programs, find_programs, without_jobs
+from twin.check.discovery import baselines_without_programs, file_of, find_programs, without_jobs
 from twin.errors import UsageError
 
 
@@ -79,6 +79,18 @@ def test_baselines_whose_programs_are_gone_are_known(tmp_path: Path):
     (tmp_path / "alone.nc").touch()
     left = baselines_without_programs(tmp_path / "baselines")
     assert left == [tmp_path / "baselines" / "gone.baseline"]
+
+
+def test_a_folder_of_baselines_may_lie_anywhere(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name in ("part.toml", "alone.nc"):
+        Path(name).touch()
+        baseline = file_of(Path("far/baselines"), Path(name), ".baseline")
+        baseline.parent.mkdir(parents=True, exist_ok=True)
+        baseline.touch()
+    assert baselines_without_programs(Path("far/baselines")) == []
 
 
 def test_of_files_of_any_kind_programs_and_jobs_are_checked_each_once(tmp_path: Path) -> None:

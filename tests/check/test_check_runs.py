@@ -10,15 +10,15 @@ from pathlib import Path
 
 import pytest
 
+from tests.command_line import Twin
 from twin.check import runner
+from twin.check.discovery import file_of
 from twin.check.outcome import CheckOutcome
-from twin.check.program import file_of
 from twin.check.runner import check_all, check_program
 from twin.check.task import CheckSettings
 from twin.commands.programs.check import CODE_QUALITY_FILE, check_and_print
 from twin.errors import ExitCode, UsageError
-from twin.job.job_file import JobFile
-from twin.job.load import Job, load_job
+from twin.job.load import load_job
 
 PROGRAM = """N10 X0 Y0 Z0 G00
 N20 G01 X10.5 F3000
@@ -126,10 +126,10 @@ def test_a_baseline_lies_under_the_jobs_own_path(tmp_path: Path, monkeypatch: py
         tmp_path / "a" / "part.nc": "stored/a/part.baseline",
         Path("a/part.tap"): "stored/a/part.tap.baseline",
     }.items():
-        assert file_of(folder, load_job(path), ".baseline") == Path(stored)
+        job = load_job(path)
+        assert file_of(folder, job.path or job.program, ".baseline") == Path(stored)
     monkeypatch.chdir(tmp_path / "a" / "..")
-    elsewhere = Job(Path("/elsewhere"), JobFile(program="part.nc"))
-    outside = file_of(folder, elsewhere, ".baseline")
+    outside = file_of(folder, Path("/elsewhere/part.nc"), ".baseline")
     assert outside == Path("stored/elsewhere/part.nc.baseline")
 
 
@@ -238,6 +238,30 @@ def test_outputs_that_cannot_be_written_are_told_before_anything_runs(
             check_and_print(
                 [job], settings=CheckSettings(), junit=junit, json_file=json_file, environment={}
             )
+
+
+@pytest.mark.parametrize(
+    "command", [("check", "none.toml"), ("sweep", "none.toml", "--vary", "job.dialect=haas")]
+)
+def test_a_check_of_nothing_leaves_no_earlier_verdict(
+    command: tuple[str, ...], tmp_path: Path, twin: Twin, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("twin.json").write_text('[{"verdict": "pass"}]')
+    assert twin(*command, "--json", "twin.json").code == ExitCode.USAGE
+    assert not Path("twin.json").exists()
+
+
+def test_a_program_that_is_wrong_has_no_earlier_report(
+    tmp_path: Path, twin: Twin, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    write_job(tmp_path, "part", "N10 X1 QQ5")
+    Path("reports").mkdir()
+    page = file_of(Path("reports"), Path("part.toml"), ".html")
+    page.write_text("pass")
+    assert twin("check", "part.nc", "--reports", "reports").code == ExitCode.FAILED
+    assert not page.exists()
 
 
 def test_json_alone_stands_on_the_standard_output(

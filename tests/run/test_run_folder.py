@@ -8,7 +8,7 @@ import pytest
 from tests.command_line import Twin
 from twin.commands.runs.run import run_and_print
 from twin.errors import ExitCode
-from twin.run.run_folder import VERDICT_FILES
+from twin.run.run_folder import INSPECTION_FILES, VERDICT_FILES, without_verdict
 
 GOOD = "G21 G90 G17\nG1 X1 F600\nM2\n"
 JOB = 'program = "p.nc"\ndialect = "linuxcnc"\n'
@@ -38,6 +38,26 @@ def test_no_older_verdict_is_left(name: str, tmp_path: Path, twin: Twin) -> None
     (tmp_path / "p.toml").write_text(job)
     assert twin(*run).code == code
     assert [each for each in VERDICT_FILES if (tmp_path / "out" / each).exists()] == []
+
+
+@pytest.mark.parametrize("command", [("render", "p.toml"), ("render", "out/recording.h5")])
+def test_pictures_that_fail_leave_none_of_an_earlier_part(
+    command: tuple[str, ...], tmp_path: Path, twin: Twin, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "out").mkdir()
+    for name in INSPECTION_FILES:
+        (tmp_path / "out" / name).touch()
+    asked = ("--out", "out", "--inspect", "commanded")
+    assert twin(*command, *asked).code == ExitCode.USAGE
+    assert list((tmp_path / "out").iterdir()) == []
+
+
+def test_an_interruption_before_the_run_leaves_no_older_verdict(tmp_path: Path) -> None:
+    (tmp_path / "result.json").touch()
+    with pytest.raises(KeyboardInterrupt), without_verdict(tmp_path):
+        raise KeyboardInterrupt
+    assert not (tmp_path / "result.json").exists()
 
 
 def test_a_folder_of_another_run_keeps_what_is_in_it(tmp_path: Path, twin: Twin) -> None:

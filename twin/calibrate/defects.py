@@ -23,7 +23,7 @@ _JUMP = 6.0
 _LEVEL = 10
 """Samples on either side whose level tells a lost reference from a spike."""
 _STEPS = 3.0
-"""Resolutions that a sample must be expected to move by, for its repetition to say anything."""
+"""Resolutions that a sample must be expected to move by, for its repetition to be significant."""
 _OVER = 10
 """Samples on either side from which that is expected."""
 _HELD = 0.3

@@ -47,7 +47,7 @@ _OFFSET = 0.2
 _OTHER_MASS = 20.0
 """Times the base's mass, or a part of it, that rather is another unit."""
 _SPECTRUM = 1000
-"""Samples without which noise has no colour, and motion no scale, to speak of."""
+"""Fewest samples for the colour of noise and the scale of motion."""
 _HELD = 0.5
 """Share of samples that repeat the one before while the command moves, above which it is held."""
 

@@ -23,7 +23,7 @@ from twin.logs.machine_log import AxisLog, MachineLog
 from twin.nc.canonical import BoolArray, FloatArray
 
 MOST_FITTED = 60_000
-"""Samples that a fit runs along: more tell no more, and each of hundreds of runs takes longer."""
+"""Samples that a fit runs along: more add nothing, and each of hundreds of runs takes longer."""
 _MOST_AT_ONCE = 100_000
 """Samples that are looked at or judged at once: what a model has in place of them takes ten times their room."""
 _PART_S = 5.0

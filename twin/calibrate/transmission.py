@@ -15,7 +15,7 @@ from twin.machine.model.drives import reflected_inertia
 from twin.units import AxisKind
 
 BEFORE_THE_GAP = ("motor_inertia", "screw_inertia")
-"""What of the mass lies before the gap: no log tells it, the base has it. A stiffness stands on it."""
+"""What of the mass lies before the gap: no log determines it, it is the base's. A stiffness depends on it."""
 
 
 def units_of(kind: AxisKind) -> dict[str, str]:

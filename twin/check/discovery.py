@@ -14,7 +14,7 @@ NC_SUFFIXES = frozenset(
 )
 """What a file must end in to be taken for an NC program when a folder is searched."""
 _KLARTEXT = re.compile(rb"^[ \t]*\d*[ \t]*BEGIN[ \t]+PGM\b", re.IGNORECASE | re.MULTILINE)
-"""What tells a Klartext program from the headers of C, whose names end in .h as well."""
+"""What distinguishes a Klartext program from the headers of C, whose names end in .h as well."""
 _HEAD_BYTES = 4096
 
 _FOREIGN_FOLDERS = frozenset({"node_modules", "site-packages", "__pycache__"})
@@ -108,13 +108,37 @@ def without_jobs(programs: Iterable[Path]) -> list[Path]:
 
 
 def baselines_without_programs(folder: Path) -> list[Path]:
-    """Baselines in a folder whose job and program are both gone from beside it."""
+    """Baselines in a folder whose job and program are both gone."""
     left = []
     for baseline in sorted(folder.rglob("*.baseline")):
-        place = folder.resolve().parent / baseline.relative_to(folder)
-        if not (place.with_suffix(".toml").is_file() or place.with_suffix("").is_file()):
+        places = [anchor / baseline.relative_to(folder) for anchor in _anchors(folder)]
+        ends = (".toml", "")
+        if not any(place.with_suffix(end).is_file() for place in places for end in ends):
             left.append(baseline)
     return left
+
+
+def file_of(folder: Path, path: Path, suffix: str) -> Path:
+    """Where a job's baseline or report lies: in the folder, under the job's own path.
+
+    Args:
+        path: The job, or a program without one, which keeps its whole name, so that two of the same stem do not
+            share a file.
+    """
+    resolved = path.resolve()
+    anchor = next(each for each in _anchors(folder) if resolved.is_relative_to(each))
+    parts = resolved.relative_to(anchor)
+    name = parts.stem if parts.suffix == ".toml" else parts.name
+    return folder / parts.with_name(name + suffix)
+
+
+def _anchors(folder: Path) -> tuple[Path, ...]:
+    """From where the paths in a folder of baselines or reports count: the first that a program lies below.
+
+    It is the folder that this folder lies in, so that programs are found again from another checkout and from
+    another working folder, else the working folder.
+    """
+    return folder.resolve().parent, Path.cwd().resolve(), Path("/")
 
 
 def _is_foreign(folder: Path) -> bool:

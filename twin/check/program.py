@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
+from twin.check.discovery import file_of
 from twin.check.outcome import CheckOutcome, Finding
 from twin.check.task import CheckSettings, JobVariant
 from twin.compare.baseline import compare_baseline, write_baseline
@@ -15,8 +16,8 @@ from twin.compare.baseline_text import RunFigures
 from twin.compare.verdict import Reason
 from twin.errors import ConfigError, EmptyProgramError, ExitCode, TwinError, UsageError
 from twin.files.toml_lines import place_of_key
-from twin.job.load import Job
 from twin.nc.canonical import Chunk
+from twin.nc.text.comments import comment_marks, without_comments
 from twin.nc.text.diagnostics.diagnostics import Diagnostic, ProgramError
 from twin.recording.alarms import Alarm
 from twin.recording.reader import LONGEST_TEXT
@@ -71,22 +72,6 @@ def run_variant(variant: JobVariant, settings: CheckSettings) -> CheckOutcome:
     return dataclasses.replace(outcome, wall_s=time.perf_counter() - began, changes=variant.changes)
 
 
-def file_of(folder: Path, job: Job, suffix: str) -> Path:
-    """Where a job's baseline or report lies: in the folder, under the job's own path.
-
-    Paths are anchored at the folder that the baselines' own folder lies in, or at the working folder
-    for what is not below that, so that they are found again from another checkout and from another
-    working folder. A program without a job file keeps its whole name, so that two of the same stem
-    do not share one.
-    """
-    resolved = (job.path or job.program).resolve()
-    anchors = (folder.resolve().parent, Path.cwd().resolve())
-    anchor = next((each for each in anchors if resolved.is_relative_to(each)), Path("/"))
-    parts = resolved.relative_to(anchor)
-    name = parts.name if job.path is None else parts.stem
-    return folder / parts.with_name(name + suffix)
-
-
 def _checked(variant: JobVariant, settings: CheckSettings) -> CheckOutcome:
     preparation = prepare(
         variant.path,
@@ -114,7 +99,7 @@ def _run(preparation: Preparation, path: Path, settings: CheckSettings) -> Check
         from twin.run.results import report_of, result_of
 
         page = report_of(run, outcome, result_of(run, outcome))
-        write_report(file_of(settings.reports, preparation.job, ".html"), page)
+        write_report(file_of(settings.reports, _path(preparation), ".html"), page)
     contour = outcome.figures.contour
     alarmed = outcome.verdict.outcome == "alarm"
     ended = not alarmed or preparation.job.file.expect is not None
@@ -152,7 +137,7 @@ def _baseline_reasons(
     """
     if settings.baseline is None:
         return []
-    file = file_of(settings.baseline, preparation.job, ".baseline")
+    file = file_of(settings.baseline, _path(preparation), ".baseline")
     axes, keys = preparation.machine.axes, _settings(preparation)
     if not settings.update_baseline:
         limits = preparation.job.file.baseline
@@ -162,12 +147,17 @@ def _baseline_reasons(
     return []
 
 
+def _path(preparation: Preparation) -> Path:
+    return preparation.job.path or preparation.job.program
+
+
 def _source(preparation: Preparation) -> list[str]:
-    """The lines of the program; none of one that is too long to keep."""
-    source = preparation.source
+    """The lines of the program without comments, blanks once; none of one that is too long to keep."""
+    source, marks = preparation.source, comment_marks(preparation.dialect.syntax.comments)
     if source.lines.size > LONGEST_TEXT:
         return []
-    return source.text.encode("utf-8", "replace").decode("utf-8").split("\n")
+    text = source.text.encode("utf-8", "replace").decode("utf-8")
+    return [" ".join(without_comments(line, marks)[0].split()) for line in text.split("\n")]
 
 
 def _figures(outcome: Outcome) -> RunFigures:

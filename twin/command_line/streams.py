@@ -8,7 +8,7 @@ import sys
 from twin.files.atomic import with_path
 
 CLOSED_PIPE = 141
-"""Exit code of a command whose output nobody reads to its end, as shells give it (128 + SIGPIPE)."""
+"""Exit code of a command whose output is closed before its end, as shells give it (128 + SIGPIPE)."""
 
 _TRANSLITERATED = str.maketrans(
     {"µ": "u", "–": "-", "—": "-", "°": "deg", "²": "2", "³": "3", "·": "*", "×": "x", "…": "..."}

@@ -7,7 +7,7 @@ from rich.console import Console
 _LEAST_WIDTH = 72
 """Narrower terminals fold the lines themselves: figures that are cut off are worse."""
 _LOG_WIDTH = 160
-"""In a log folding at 80 columns helps nobody."""
+"""Width in logs, where tables should not be folded at 80 columns."""
 
 
 def table_console(*, stderr: bool = False) -> Console:

@@ -24,10 +24,10 @@ from twin.compare.baseline_text import (
 )
 from twin.compare.block_difference import block_differences, same_end
 from twin.compare.changed_lines import (
+    changed_codes,
     changed_lines,
-    changed_offsets,
     differences_by_line,
-    without_comments,
+    numbered,
 )
 from twin.compare.verdict import Reason
 from twin.errors import UsageError
@@ -60,10 +60,14 @@ def write_baseline(
     settings: Mapping[str, str] | None = None,
     source: Sequence[str] = (),
 ) -> None:
-    """Store a baseline, complete or not at all."""
+    """Store a baseline, complete or not at all.
+
+    Args:
+        source: Lines of the program without comments.
+    """
     with complete_or_absent(path) as temporary, temporary.open("w", encoding="utf-8") as file:
-        lines = [line for line in without_comments(source) if line]
-        write(file, Head(figures, axes.names, settings or {}, lines), entries(chunks))
+        head = Head(figures, axes.names, settings or {}, numbered(source)[1])
+        write(file, head, entries(chunks))
 
 
 def compare_baseline(
@@ -80,7 +84,7 @@ def compare_baseline(
     Args:
         figures: What the run came to; None when it did not come to its end.
         chunks: The program; where it no longer interprets, the baseline tells what was there.
-        source: Lines of the program, of which the changed ones are named.
+        source: Lines of the program without comments, of which the changed ones are named.
 
     Returns:
         A reason for every key of the job, every block and every figure that differs too much.
@@ -105,7 +109,7 @@ def compare_baseline(
                 told = list(differences_by_line(found, changed))
                 known = {reason.line for reason in told}
                 told += [
-                    each for each in _offset_reasons(head.source, source) if each.line not in known
+                    each for each in _code_reasons(head.source, source) if each.line not in known
                 ]
                 reasons += _first_of(iter(told))
     except (ValueError, IndexError, TypeError) as error:
@@ -114,9 +118,9 @@ def compare_baseline(
     return reasons + ([] if figures is None else _figure_reasons(head.figures, figures, limits))
 
 
-def _offset_reasons(stored: Sequence[str], now: Sequence[str]) -> Iterator[Reason]:
-    """Other offsets, where nothing moves differently for them."""
-    for line, message in changed_offsets(stored, now) if stored else ():
+def _code_reasons(stored: Sequence[str], now: Sequence[str]) -> Iterator[Reason]:
+    """Other codes and offsets, where nothing moves differently for them."""
+    for line, message in changed_codes(stored, now) if stored else ():
         yield Reason("baseline-function", message, line, 0.0)
 
 

@@ -6,19 +6,14 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from twin.compare.verdict import Reason
 
-_COMMENT = re.compile(r"\([^()]*\)|;.*")
-"""What most controls read as a comment; a line that differs in nothing else has not changed."""
-
-_OFFSET = re.compile(r"(?<![A-Z#&%@_])[DH] ?\d+", re.IGNORECASE)
-"""The number of an offset of a tool's radius or length."""
+_CODE = re.compile(r"(?<![A-Z0-9#&%@_])([DGHPQ]) ?(\d+(?:\.\d+)?)", re.IGNORECASE)
+"""A code, the number of an offset, or what tells a code apart (``G54.1 P2``, ``G5.1 Q1``)."""
 
 
-_PATH = "baseline-path"
-
-
-def without_comments(lines: Iterable[str]) -> list[str]:
-    """The lines of a program as they are compared: without comments, blanks once; empty ones stay."""
-    return [" ".join(_COMMENT.sub(" ", line).split()) for line in lines]
+def numbered(lines: Sequence[str]) -> tuple[list[int], list[str]]:
+    """The lines that say anything, their numbers from 1 before them."""
+    said = [number for number, line in enumerate(lines, 1) if line]
+    return said, [lines[number - 1] for number in said]
 
 
 def changed_lines(before: Sequence[str], now: Sequence[str]) -> list[int]:
@@ -26,9 +21,9 @@ def changed_lines(before: Sequence[str], now: Sequence[str]) -> list[int]:
 
     Args:
         before: The lines of the stored program that say anything, without comments.
+        now: All lines of the program, without comments.
     """
-    numbered = [(n, line) for n, line in enumerate(without_comments(now), 1) if line]
-    numbers, texts = [n for n, _ in numbered], [line for _, line in numbered]
+    numbers, texts = numbered(now)
     found = set[int]()
     matcher = difflib.SequenceMatcher(None, before, texts, autojunk=False)
     for what, _, _, begin, end in matcher.get_opcodes():
@@ -39,34 +34,46 @@ def changed_lines(before: Sequence[str], now: Sequence[str]) -> list[int]:
     return sorted(found)
 
 
-def changed_offsets(before: Sequence[str], now: Sequence[str]) -> Iterator[tuple[int, str]]:
-    """Lines that differ in a word D or H alone, with what was said and what is said now.
+def changed_codes(before: Sequence[str], now: Sequence[str]) -> Iterator[tuple[int, str]]:
+    """Lines that differ in codes and numbers of offsets alone, with what was said and what is said now.
 
-    Another offset with the same value moves nothing differently today, and does on the machine tomorrow.
+    Another offset with the same value moves nothing differently today, and does on the machine tomorrow; so does a
+    code that changes nothing here, such as another smoothness. Another spelling is no difference, nor is a code more or
+    less: a repeated modal one.
 
     Args:
         before: As in ``changed_lines``.
         now: As in ``changed_lines``.
     """
-    numbered = [(n, line) for n, line in enumerate(without_comments(now), 1) if line]
-    texts = [line for _, line in numbered]
+    numbers, texts = numbered(now)
     matcher = difflib.SequenceMatcher(None, before, texts, autojunk=False)
     for what, first, last, begin, end in matcher.get_opcodes():
         if what != "replace" or last - first != end - begin:
             continue
-        for there, (line, here) in zip(before[first:last], numbered[begin:end], strict=True):
-            if _OFFSET.sub(" ", there).split() == _OFFSET.sub(" ", here).split():
-                said, says = (" ".join(_OFFSET.findall(each)) for each in (there, here))
-                yield line, f"{says or 'no offset'}, baseline {said or 'no offset'}"
+        pairs = zip(before[first:last], texts[begin:end], numbers[begin:end], strict=True)
+        for there, here, line in pairs:
+            said, says = _codes(there), _codes(here)
+            offsets = {code[0] for code in said ^ says} & {"D", "H"}
+            if _CODE.sub(" ", there).split() == _CODE.sub(" ", here).split() and (
+                offsets or len(said) == len(says) > len(said & says)
+            ):
+                yield line, f"{_told(says - said)}, baseline {_told(said - says)}"
+
+
+def _codes(line: str) -> set[tuple[str, float]]:
+    return {(letter.upper(), float(value)) for letter, value in _CODE.findall(line)}
+
+
+def _told(codes: set[tuple[str, float]]) -> str:
+    return " ".join(f"{letter}{value:g}" for letter, value in sorted(codes)) or "no offset"
 
 
 def differences_by_line(reasons: Iterable[Reason], changed: Sequence[int]) -> Iterator[Reason]:
     """Differences of blocks, gathered at the changed lines that they follow from.
 
-    A word of a cycle changes all its holes, a word in a loop all its rounds: each code is reported once a
-    changed line, with the first difference and how many there are. A difference belongs to its own line
-    if that has changed, or else to the last changed line before it, or to the first behind it; what follows in
-    unchanged lines from a path that differs is one finding with it, whatever it is.
+    A word of a cycle changes all its holes, a word in a loop all its rounds: a changed line is one finding, with the
+    first difference of each kind and how many there are. A difference belongs to its own line if that has changed, or
+    else to the last changed line before it, or to the first behind it.
 
     Args:
         reasons: One for each block that differs.
@@ -75,18 +82,15 @@ def differences_by_line(reasons: Iterable[Reason], changed: Sequence[int]) -> It
     if not changed:
         yield from reasons
         return
-    first: dict[tuple[int, str], Reason] = {}
-    count: dict[tuple[int, str], int] = {}
+    by_line: dict[int, list[Reason]] = {}
     for reason in reasons:
         line = max((each for each in changed if each <= reason.line), default=changed[0])
-        follows = reason.line != line and (line, _PATH) in first
-        key = line, _PATH if follows else reason.what
-        first.setdefault(key, reason)
-        count[key] = count.get(key, 0) + 1
-    for (line, what), reason in first.items():
-        message, more = reason.message, count[line, what] - 1
-        if reason.line != line:
-            message = f"line {reason.line} {message}"
-        if more:
-            message += f" (and {more} more of this change)"
-        yield Reason(what, message, line, reason.time_s)
+        by_line.setdefault(line, []).append(reason)
+    for line, found in by_line.items():
+        kinds: dict[str, str] = {}
+        for reason in found:
+            where = "" if reason.line == line else f"line {reason.line} "
+            kinds.setdefault(reason.what, where + reason.message)
+        more = len(found) - len(kinds)
+        message = "; ".join(kinds.values()) + (f" (and {more} more of this change)" if more else "")
+        yield Reason(found[0].what, message, line, found[0].time_s)

@@ -101,7 +101,7 @@ class ArcFigures:
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class BidirectionalFigures:
-    """Figures of a full circle that was run both ways, after ISO 230-4.
+    """Figures of a full circle that was run in both directions, after ISO 230-4.
 
     Attributes:
         radius_mm: Commanded radius [mm].
@@ -195,7 +195,7 @@ class Figures:
         worst: The lines with the greatest contour errors, greatest first.
         blocks: By source line, feeds and rapids apart.
         features: Contour error of ``line`` and ``arc`` blocks; those that the program has.
-        bidirectional: Full circles that were run both ways, by line.
+        bidirectional: Full circles that were run in both directions, by line.
         shares: What drives and every error of the geometry have of the greatest contour error, along
             it [µm]; empty where the machine has no such errors.
         direction: Angle between the tool's commanded and simulated directions in the part, counted as a rotary

@@ -173,8 +173,8 @@ def _contour_checks(figures: Figures, tolerance: ToleranceTable) -> Iterator[Che
 def _shares_text(figures: Figures) -> str:
     """The shares of the greatest contour error, greatest first, such as ``9.0 squareness XY``."""
     ranked = sorted(figures.shares.items(), key=lambda share: -abs(share[1]))
-    told = [f"{value:.1f} {name}" for name, value in ranked if abs(value) >= _LEAST_SHARE]
-    return f" ({', '.join(told)})" if told else ""
+    shares = [f"{value:.1f} {name}" for name, value in ranked if abs(value) >= _LEAST_SHARE]
+    return f" ({', '.join(shares)})" if shares else ""
 
 
 _LEAST_SHARE = 0.05

@@ -21,7 +21,7 @@ SHIPPED = PACKAGE / "_resources" / "kernels"
 
 _DAY_S = 86_400.0
 _FORGOTTEN_AFTER_S = 60 * _DAY_S
-"""Kernels that nobody has loaded for so long belong to a version that is gone."""
+"""Kernels that were not loaded for so long belong to a version that is no longer installed."""
 
 
 _chosen: list[Path] = []

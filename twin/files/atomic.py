@@ -96,6 +96,15 @@ def require_writable(path: Path) -> None:
     require_folder(Path(os.path.realpath(path)).parent, named=path)
 
 
+def remove_earlier(path: Path) -> None:
+    """Remove a file that is to be written anew, so that nobody reads it for the new one where that never comes.
+
+    What is no file of its own stays: a pipe, a terminal, a folder.
+    """
+    if path not in _STDOUT_NAMES and path.is_file():
+        path.unlink()
+
+
 def require_folder(folder: Path, *, named: Path | None = None) -> None:
     """Make sure that files can be put into a folder, which is made when missing.
 

@@ -30,7 +30,7 @@ class StockTable(Table):
     """Tube: diameter of its hole [mm]."""
     axis: Literal["X", "Y", "Z"] | None = None
     """Cylinder and tube: along which axis of the program it lies, such as a bar in the chuck of a rotary table A; none:
-    Z, it stands."""
+    Z, upright."""
     file: str | None = None
     """STL: its file [mm], relative to the job file."""
     position: Triple = (0.0, 0.0, 0.0)
@@ -136,7 +136,7 @@ class ToolTable(Table):
     """Bull-nose: radius of the corner [mm]."""
     radius_offset: Annotated[float, Field(ge=0)] | None = None
     """What the control's tool table holds as its radius [mm]; none: half the diameter. 0 where the program's contours
-    are the path of the tool's centre already and the table holds the wear alone (posts: "wear" compensation)."""
+    are the path of the tool's centre already and the table has only the wear (posts: "wear" compensation)."""
     angle: Annotated[float, Field(gt=0, lt=180)] | None = None
     """Drill and chamfer: included angle of the point [deg]; none: 118 and 90."""
     tip: Annotated[float, Field(ge=0)] = 0.0
@@ -157,7 +157,7 @@ class ToolTable(Table):
     """Direction of rotation in which it cuts, seen from the spindle: ``right`` clockwise (M3)."""
     center_cutting: bool | None = None
     """Whether an end mill cuts over its centre, so that it may plunge; none: with two or three teeth it
-    does, as slot drills after DIN 327 do, with more nobody knows."""
+    does, as slot drills after DIN 327 do; with more it is not known."""
     made_of: Literal["carbide", "hss"] = "carbide"
     """Cemented carbide or high-speed steel: how far it bends, and where it breaks."""
     force_limit: Positive | None = None
@@ -244,7 +244,7 @@ class VideoTable(Table):
     seconds: Positive = 12.0
     """Length of the video; the run is sped up or slowed down to fit [s]."""
     speed: Positive | None = None
-    """Times faster than in reality, instead of a length."""
+    """Times faster than real time, instead of a length."""
     quality: Literal["draft", "final"] = "draft"
     """``final`` has shadows, smooth edges and a finer stock, and takes several times as long."""
     renderer: Literal["opengl", "filament"] = "opengl"
@@ -268,7 +268,7 @@ class JobFile(Table):
     program: str
     """NC program, relative to the job file."""
     dialect: str | None = None
-    """One of ``twin dialects``; none: distinguished by the program's own words."""
+    """One of ``twin dialects``; none: recognised from the program."""
     machine: str = DEFAULT_MACHINE
     """A shipped machine's name, or a path relative to the job file."""
     axes: dict[Annotated[str, Field(pattern="^[A-Z]$")], str] = Field(default_factory=dict)
@@ -291,7 +291,7 @@ class JobFile(Table):
     tools: tuple[ToolTable, ...] = (ToolTable(number=1),)
     """The first is in the spindle at the start."""
     tool_change: ToolChangeTable = ToolChangeTable()
-    """Where Z goes by itself before a tool changes; it comes before the machine's."""
+    """Height to which Z goes by itself before a tool change; overrides the machine's."""
     fixtures: tuple[FixtureTable, ...] = ()
     """What holds the part, in addition to what the machine file puts on its table."""
     cutting_load: bool = False
@@ -321,7 +321,7 @@ class JobFile(Table):
     """``fanuc``, ``haas``: ``X10`` is 10 mm ("calculator"), or 0.010 mm ("increments"); missing: as
     the machine file says, else as the control does when it comes from its maker."""
     rollover: Literal["shorter", "sign"] | None = None
-    """``fanuc``: absolute targets of rotary axes are those of a turn, reached by the shorter way, or in the direction of
+    """``fanuc``: absolute targets of rotary axes are those of a turn, reached by the shorter path, or in the direction of
     their sign; missing: as the machine file says, else as they are written."""
     units: Literal["mm", "inch"] | None = None
     """In which units the program begins where it names none; missing: as the machine file says, else mm."""

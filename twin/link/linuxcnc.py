@@ -15,7 +15,7 @@ from typing import NamedTuple
 from twin.errors import UsageError
 
 LOCK = Path("/tmp/linuxcnc.lock")  # noqa: S108 - LinuxCNC's own
-"""Stands while a LinuxCNC runs on this computer; there can be one."""
+"""Exists while a LinuxCNC runs on this computer; there can be only one."""
 PACKAGE = "linuxcnc-uspace"
 _CLAIM = b"\0mill-twin-linuxcnc"
 """A name that the kernel gives to one process at a time, and takes back however that process ends."""

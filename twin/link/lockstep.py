@@ -124,11 +124,11 @@ TICKS_PER_CHUNK = 500
 SETTLING_S = 0.25
 """How long the end of a program is kept after its last motion [s]."""
 LONGEST_SILENCE_S = 15.0
-"""A control that has asked and then says nothing for so long is gone [s]."""
+"""A control that is silent for so long after a request is gone [s]."""
 _ASKED_S = 0.5
 """How often the control is looked after while it asks [s]."""
 _WAKE_S = 0.2
-"""How often the twin looks around while nobody asks [s]."""
+"""Period at which the twin looks for the control while no request comes [s]."""
 _LOOPBACK = "127.0.0.1"
 
 

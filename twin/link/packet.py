@@ -12,7 +12,7 @@ from typing import NamedTuple
 VERSION = 1
 """Of the layout: raise it with every change of it."""
 MAGIC = 0x4E54574D
-"""The letters MWTN: a packet of somebody else is dropped."""
+"""The letters MWTN: any other packet is dropped."""
 JOINTS = 9
 """Places for joints in a packet; a machine has as many of them as it has axes."""
 REASON_BYTES = 160

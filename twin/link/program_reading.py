@@ -42,7 +42,7 @@ _IN_PLANE = {"G17": (0, 1, 2), "G18": (2, 0, 1), "G19": (1, 2, 0)}
 """Columns of a plane's first and second axis, and of the third."""
 _SPINDLE = {"START_SPINDLE_CLOCKWISE": "M3", "START_SPINDLE_COUNTERCLOCKWISE": "M4"}
 _REFUSED = ("PROBE", "TAP", "NURBS", "SYNCH")
-"""Parts of the names of calls for which the twin has nothing: probing, tapping, threads."""
+"""Parts of the names of calls that the twin does not support: probing, tapping, threads."""
 _READ_BY_THE_TWIN = "--dialect linuxcnc: the twin reads the program, and LinuxCNC drives its moves"
 _FULL_TURN = 2.0 * np.pi
 _PRINTED = 1e-4

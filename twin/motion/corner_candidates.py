@@ -168,12 +168,12 @@ def _worth_stopping(surroundings: Surroundings, borders: Borders) -> list[tuple[
     bends[1:] |= bent[:-1]
     changes = np.append(False, feed[1:] != feed[:-1])
     knee = (borders.entry > 0.0) & (borders.entry < np.inf)
-    doubtful = ((borders.width > 0.0) & (bends | changes)) | (knee & bends)
+    undecided = ((borders.width > 0.0) & (bends | changes)) | (knee & bends)
     stops = np.flatnonzero((borders.entry == 0.0) & (borders.width == 0.0))
     if not np.any(blocks.corner == Corner.CONTINUOUS):
         # A path that is kept exactly is the same whatever happens at the ends of these blocks: it may stop there too.
         stops = np.union1d(stops, [surroundings.first, surroundings.last])
-    return list(_between(surroundings, stops, doubtful))
+    return list(_between(surroundings, stops, undecided))
 
 
 def _continuous(surroundings: Surroundings, borders: Borders) -> list[tuple[int, int]]:
@@ -192,12 +192,12 @@ def _continuous(surroundings: Surroundings, borders: Borders) -> list[tuple[int,
 
 
 def _between(
-    surroundings: Surroundings, stops: IntArray, doubtful: BoolArray
+    surroundings: Surroundings, stops: IntArray, undecided: BoolArray
 ) -> Iterator[tuple[int, int]]:
-    """Pairs of stops, both among the blocks to work on, with a doubtful border between them."""
+    """Pairs of stops, both among the blocks to work on, with an undecided border between them."""
     if surroundings.to_the_end:
         stops = np.append(stops, len(surroundings.blocks))
-    among = np.searchsorted(np.flatnonzero(doubtful), stops)
+    among = np.searchsorted(np.flatnonzero(undecided), stops)
     for first, last, before, behind in zip(
         stops[:-1].tolist(), stops[1:].tolist(), among[:-1], among[1:], strict=True
     ):

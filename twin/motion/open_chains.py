@@ -29,7 +29,7 @@ WAY_BACK = 2e-3
 to come back to it takes a while."""
 
 STAYS = 7
-"""Groups of blocks in which a path that goes on is kept exactly without another trial, where that was faster so far."""
+"""Groups of blocks in which a path that goes on is kept exactly without trying a rounding again, where that was faster so far."""
 
 
 class CutBlocks(NamedTuple):

@@ -134,7 +134,7 @@ sample); missing where the force of the cut was not simulated."""
 GROWTH = "thermal/growth"
 """Dataset of ``Samples.growth``, shape (n, 3) [mm]; missing where the machine does not grow."""
 CONTOUR = "contour"
-"""Dataset of the contour error, shape (n,) [µm]; missing where nobody compared."""
+"""Dataset of the contour error, shape (n,) [µm]; missing where no comparison was made."""
 
 TEXT_ATTRIBUTES = (
     "program",

@@ -236,6 +236,8 @@ def open_growing(path: Path) -> Iterator[Recording]:
 def _opened(path: Path, *, swmr: bool = False) -> Iterator[h5py.File]:
     try:
         file = h5py.File(path, "r", swmr=swmr)
+    except FileNotFoundError as error:
+        raise RecordingError(f"{path}: no such file") from error
     except OSError as error:
         raise RecordingError(f"{path}: is not a readable recording: {error}") from error
     with file:

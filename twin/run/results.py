@@ -11,6 +11,7 @@ from twin.cutting.forces.materials import kienzle
 from twin.job.job_file import StockTable
 from twin.run.judging.outcome import Outcome
 from twin.run.run import Run
+from twin.run.run_folder import VERDICT_FILES
 
 if TYPE_CHECKING:
     from twin.compare.report.report import Report
@@ -19,15 +20,7 @@ STILL_NAME = "still.png"
 """Picture of a run's end."""
 ALARM_STILL_NAME = "collision.png"
 """Picture of the moment at which two things met."""
-RESULT_FILES = (
-    "result.json",
-    "report.html",
-    "recording.h5",
-    "part.stl",
-    "video.mp4",
-    STILL_NAME,
-    ALARM_STILL_NAME,
-)
+RESULT_FILES = (*VERDICT_FILES, "recording.h5", "video.mp4", STILL_NAME, ALARM_STILL_NAME)
 """What a run may leave; an earlier run's files of these names are removed when one begins.
 
 The result, written last, is removed first: where it is, everything that it speaks of is whole.

@@ -10,8 +10,10 @@ from pathlib import Path
 from twin.errors import UsageError
 from twin.files.atomic import LEFTOVERS
 
-VERDICT_FILES = ("result.json", "report.html", "part.stl")
-"""What a run that came to its end leaves."""
+INSPECTION_FILES = ("inspection.json", "inspection.png", "part.glb")
+"""What measuring a part leaves: figures, picture and the part in colours."""
+VERDICT_FILES = ("result.json", "report.html", "part.stl", *INSPECTION_FILES)
+"""What a run that came to its end leaves, and what was measured of its part."""
 _PROGRAM = re.compile(r"^\s*program\s*=\s*[\"'](?P<name>[^\"']+)", re.MULTILINE)
 
 
@@ -25,19 +27,20 @@ def program_stem(path: Path) -> str:
 
 
 @contextlib.contextmanager
-def without_verdict(folder: Path) -> Iterator[None]:
-    """Leave no earlier verdict where a run fails before it holds its folder.
+def without_verdict(folder: Path, files: Iterable[str] = VERDICT_FILES) -> Iterator[None]:
+    """Leave no earlier verdict where a run fails, or is interrupted, before it holds its folder.
 
-    A folder that another run holds is left as it is, and so it is where the user interrupts.
+    A folder that another run holds is left as it is.
 
     Args:
         folder: Of the results; it need not exist.
+        files: Names of those that would say something of what was not done.
     """
     try:
         yield
-    except Exception:
+    except BaseException:
         if folder.is_dir():
-            with contextlib.suppress(OSError, UsageError), run_folder(folder, VERDICT_FILES):
+            with contextlib.suppress(OSError, UsageError), run_folder(folder, files):
                 pass
         raise
 

@@ -28,7 +28,7 @@ TICK_S = 0.01
 BEFORE_START_S = 1.0
 """How long the machine stays ready before each part [s]."""
 STANDSTILL_S = 5.0
-"""How long an alarm stays active before somebody resets it [s]."""
+"""How long an alarm stays active before it is reset [s]."""
 _WAKE_S = 0.02
 """Pause between two looks at the clock [s]."""
 _TICKS_AT_ONCE = 100

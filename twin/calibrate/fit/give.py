@@ -28,7 +28,7 @@ _SMOOTHED_S = (0.01, 0.02)
 _SETTLED_S = 0.03
 """So long after the push has come to a side the gap is taken as crossed [s]."""
 _LEAST = 0.3
-"""A push below this share of a typical one does not tell its side, nor crosses a gap soon."""
+"""A push below this share of a typical one does not show its side, and crosses a gap slowly."""
 _FEW = 100
 """Samples on either side that are needed."""
 

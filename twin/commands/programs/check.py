@@ -9,13 +9,13 @@ import typer
 from rich.table import Table
 
 from twin.check import forms
-from twin.check.discovery import baselines_without_programs, find_programs, without_jobs
+from twin.check.discovery import baselines_without_programs, file_of, find_programs, without_jobs
 from twin.check.outcome import CheckOutcome, Finding
 from twin.check.runner import check_program, run_tasks
 from twin.check.task import CheckSettings
 from twin.commands.console import table_console
 from twin.errors import ExitCode, UsageError
-from twin.files.atomic import STDOUT, require_folder, require_writable, write_text
+from twin.files.atomic import STDOUT, remove_earlier, require_folder, require_writable, write_text
 from twin.run.progress import shown_progress
 
 _STYLES = {
@@ -61,8 +61,15 @@ def check_and_print(
     """
     if settings.update_baseline and settings.baseline is None:
         raise UsageError("--update-baseline needs --baseline DIR")
+    for earlier in filter(None, (junit, json_file)):
+        remove_earlier(earlier)
     programs = find_programs(paths)
     _require_outputs(settings, junit, json_file)
+    if settings.reports is not None:
+        for path in programs:
+            # A program may be run by the job beside it.
+            for named in (path, path.with_suffix(".toml")):
+                remove_earlier(file_of(settings.reports, named, ".html"))
     check = functools.partial(check_program, settings=settings)
     outcomes: list[CheckOutcome] = []
     interrupted = False

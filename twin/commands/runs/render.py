@@ -3,6 +3,7 @@
 import dataclasses
 import json
 from collections.abc import Callable
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -25,8 +26,10 @@ from twin.render.scene.scene import RenderScene
 from twin.render.still import Shot, moment, stills
 from twin.run.progress import shown_progress
 from twin.run.replay import event_time, open_scene
+from twin.run.run_folder import INSPECTION_FILES, program_stem, without_verdict
 
 RECORDING_SUFFIX = ".h5"
+_FIGURES, _PICTURE, _PART = INSPECTION_FILES
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
@@ -79,13 +82,11 @@ def render_and_print(
     if f".{wanted.form}" not in FORMATS:
         known = ", ".join(suffix[1:] for suffix in FORMATS)
         raise UsageError(f"--format '{wanted.form}': films are written as {known}")
-    if not path.is_file():
-        raise UsageError(f"{path}: no such file")
     announce_compilation()
     code = ExitCode.OK
-    recording = path
+    recording, folder = path, out or path.parent
     if path.suffix != RECORDING_SUFFIX:
-        folder = out or Path("out") / path.stem
+        folder = out or Path("out") / program_stem(path)
         code = run_and_print(
             path, folder, dialect=dialect, machine=machine, video=False, strict=False
         )
@@ -94,8 +95,9 @@ def render_and_print(
             return code
     elif dialect is not None:
         raise UsageError("--dialect is for programs and jobs: a recording holds its own")
-    with open_scene(recording, machine=machine) as (scene, preparation):
-        made = _Maker(scene, out or recording.parent, wanted, preparation.job.file.video)
+    earlier = without_verdict(folder, INSPECTION_FILES) if wanted.inspect else nullcontext()
+    with earlier, open_scene(recording, machine=machine) as (scene, preparation):
+        made = _Maker(scene, folder, wanted, preparation.job.file.video)
         within = made.make(preparation.job.file.tolerance.contour_um)
     return code or (ExitCode.OK if within else ExitCode.FAILED)
 
@@ -116,7 +118,7 @@ class _Maker:
         if wanted.inspect is not None:
             found = self._measure(wanted.inspect, wanted.tolerance_um or default_tolerance_um)
         if wanted.glb and found is None:
-            self._write(folder / "part.glb", lambda out: self._part().write_glb(out))
+            self._write(folder / _PART, lambda out: self._part().write_glb(out))
         if shots:
             stills(
                 scene,
@@ -177,13 +179,13 @@ class _Maker:
         found = part.found
         figures = found.as_json()
         self._write(
-            self._folder / "inspection.json",
+            self._folder / _FIGURES,
             lambda out: write_text(out, json.dumps(figures, indent=2) + "\n"),
         )
         if self._wanted.glb:
-            self._write(self._folder / "part.glb", part.write_glb)
+            self._write(self._folder / _PART, part.write_glb)
         self._write(
-            self._folder / "inspection.png",
+            self._folder / _PICTURE,
             lambda out: inspection_still(
                 scene,
                 part,

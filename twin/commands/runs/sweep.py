@@ -15,7 +15,7 @@ from twin.check.variation import variants
 from twin.commands.console import table_console
 from twin.commands.programs.check import exit_code_of
 from twin.errors import ExitCode, UsageError
-from twin.files.atomic import STDOUT, require_writable, write_text
+from twin.files.atomic import STDOUT, remove_earlier, require_writable, write_text
 from twin.run.progress import shown_progress
 
 
@@ -42,6 +42,8 @@ def sweep_and_print(
     Raises:
         UsageError: The job is missing, or a text says no values.
     """
+    if json_file is not None:
+        remove_earlier(json_file)
     if not path.is_file():
         raise UsageError(f"{path}: no such file")
     tasks = variants(path, vary)

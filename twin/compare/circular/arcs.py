@@ -24,7 +24,7 @@ _NO_POLAR = np.zeros((0, 2))
 
 
 def plane_axes(normal: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Directions of 0 and 90 degrees in the planes of arcs, whichever way their normals point.
+    """Directions of 0 and 90 degrees in the planes of arcs, whatever the sense of their normals.
 
     X and Y in XY, Z and X in ZX, Y and Z in YZ, as ISO 230-4 names the planes; in an oblique plane
     the projection of the first axis of the nearest of these.
@@ -117,7 +117,7 @@ class ArcCollector:
             self._done = _greatest(self._done)
 
     def bidirectional(self) -> tuple[BidirectionalFigures, ...]:
-        """Circles that were run both ways, by line; open arcs as far as they got."""
+        """Circles that were run in both directions, by line; open arcs as far as they got."""
         pairs = self._pairs.copy()
         for _, arc in sorted(self._open.items()):
             pairs.add(arc.directed)

@@ -1,4 +1,4 @@
-"""Full circles that are run both ways, evaluated together after ISO 230-4."""
+"""Full circles that are run in both directions, evaluated together after ISO 230-4."""
 
 import dataclasses
 
@@ -11,7 +11,7 @@ from twin.nc.canonical import Moves
 RECENT_CIRCLES = 16
 """So many circles are remembered, to be found again in the other direction."""
 PAIRS_KEPT = 1000
-"""Of circles run both ways, those with the greatest circular deviation are kept."""
+"""Of circles run in both directions, those with the greatest circular deviation are kept."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)

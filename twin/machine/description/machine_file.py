@@ -222,7 +222,7 @@ class ControlTable(Table):
     by less than a turn."""
     rollover: Literal["shorter", "sign"] | None = None
     """``fanuc``, parameters 1006 and 1008 (ROT, ROA, RAB): absolute rotary targets are those of a turn, reached by the
-    shorter way (RAB 0), or in the direction of their sign (RAB 1); missing: as they are written (ROA 0)."""
+    shorter path (RAB 0), or in the direction of their sign (RAB 1); missing: as they are written (ROA 0)."""
     decimal_point: Literal["calculator", "increments"] | None = None
     """``fanuc``, ``haas``: ``X10`` is 10 mm ("calculator"), or 0.010 mm ("increments")."""
     units: Literal["mm", "inch"] | None = None

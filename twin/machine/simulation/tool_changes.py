@@ -13,7 +13,7 @@ from twin.toolpath.tool_plan import ToolPlan
 REMEDY = (
     "go up before M6, or write [tool_change] height = 0 into the job where M6 goes there by itself"
 )
-"""What helps against a tool that comes where there is no room for it."""
+"""Hint for a tool that is changed where there is no room for it."""
 
 
 class ToolClearances:

@@ -51,7 +51,7 @@ def settle(
 
 
 SAMPLES = 4096
-"""Setpoints per chunk at most: the first is simulated before anybody sees a sample, and larger ones run no faster."""
+"""Setpoints per chunk at most: the first is simulated before any sample is available, and larger ones run no faster."""
 
 
 def sample(

@@ -45,6 +45,12 @@ def machine_zero(control: Control, code: str) -> Mapping[str, float]:
     return zero
 
 
+def place_from_machine_zero(control: Control, code: str) -> list[float]:
+    """Where the axes are, machine coordinates, shape (k,) [mm or deg], for a code that stores it."""
+    zero, names = machine_zero(control, code), control.settings.axes.names
+    return [at - zero.get(name, 0.0) for name, at in zip(names, control.motion.part, strict=True)]
+
+
 def table_zero(control: Control, code: str) -> Mapping[str, float]:
     """Part coordinates of the point from which the control's table of work offsets counts, by axis [mm or deg].
 

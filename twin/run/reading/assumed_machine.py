@@ -21,7 +21,7 @@ _OTHER_USE = re.compile(
 """Lines in which A, B and C are arguments, angles of a plane or parts of words."""
 
 _UNDECIDED = "B"
-"""Of mills with one rotary axis B it is a table's, of the shipped one the head's: nobody knows which is meant."""
+"""Of mills with one rotary axis B it is a table's, of the shipped one the head's: which is meant is not known."""
 
 
 def assumed_machine(source: Source) -> tuple[str, str] | None:

@@ -30,9 +30,9 @@ _MOST_LINES = 200_000
 _SAME = 1e-6
 """Positions that differ less are the same [mm or deg]; feeds by this share."""
 _CLEARANCE = 1.0
-"""How far between pecks a drill withdraws is a parameter of the control; rapids that differ by less ask nobody [mm]."""
+"""How far between pecks a drill withdraws is a parameter of the control; rapids that differ by less are accepted [mm]."""
 _NEARLY = 0.1
-"""Feeds on the same path that differ by less are stated, but they ask nobody: F of a helix counts its arc or its path."""
+"""Feeds on the same path that differ by less are reported, and accepted: F of a helix counts its arc or its path."""
 _CRAWLS = 1.0
 """A dialect that alone reads a program, and in which it feeds slower than this, was not meant [mm/min]."""
 _TOO_SLOW = 1.0 / 200.0
@@ -44,7 +44,7 @@ _ROUTERS = "grbl"
 """The control of most routers, which passes over words that others refuse: taken where these refuse a program without a number."""
 _POSTS = re.compile(r"pcb2gcode|\bpycam|dxf2gcode|gcodetools|heekscnc", re.IGNORECASE)
 _OF_POSTS = "linuxcnc"
-"""What these posts write, which asks nobody where others would move differently."""
+"""What these posts write: it is taken also where other dialects would move differently."""
 _NUMBERED = ("fanuc", "haas")
 """Controls whose programs begin with their number."""
 

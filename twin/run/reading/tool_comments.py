@@ -31,7 +31,7 @@ _KINDS: tuple[tuple[str, str], ...] = (
     (r"BULL|CORNER RAD|RADIUSED|TOROID", "bull"),
     (r"BALL|SPHER|\bKUGEL", "ball"),
 )
-"""Words of comments, and the kind that they tell; other tools are end mills."""
+"""Words of comments, and the kind of tool that they name; other tools are end mills."""
 
 _WHAT = r"MILL|DRILL|TAP|REAMER|FRAESER|FRÄSER|BOHRER"
 _DIAMETERS = (

@@ -13,7 +13,7 @@ from twin.training.server.driver import Driver
 PSEUDO_TERMINAL = "pty"
 """What is asked for in the place of a port."""
 LOOK_S = 0.005
-"""Time between two looks at what the control has to say [s]."""
+"""Period at which answers of the control are polled [s]."""
 _AT_ONCE = 4096
 _MOST_UNSENT = 1 << 20
 """Bytes that a sender may leave unread before its line is cut."""

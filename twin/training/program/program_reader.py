@@ -80,7 +80,7 @@ class MoveWindow:
 MOVES_AT_ONCE = 256
 """Moves that are interpreted before they are handed on."""
 READ_AT_ONCE = 200
-"""Blocks that are read at once for somebody who drives none of them."""
+"""Blocks that are read at once where none of them is driven."""
 
 Ending = Literal["end", "stop", "tool", "wait", "soft-limit", "program"]
 

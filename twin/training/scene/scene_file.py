@@ -79,7 +79,7 @@ class StartTable(Table):
     mode: Mode = "auto"
     """Automatic, single block, jog, or a line typed in."""
     position: dict[str, float] = Field(default_factory=dict)
-    """Where the axes stand, machine coordinates [mm or deg]; none: as the job's start says."""
+    """Where the axes are, machine coordinates [mm or deg]; none: as the job's start says."""
     zero_error: dict[str, float] = Field(default_factory=dict)
     """How far the control's part zero is off the part's true one [mm or deg]."""
     tool_length_error: float = 0.0
@@ -87,13 +87,13 @@ class StartTable(Table):
     spindle: bool = False
     """Whether the spindle turns already."""
     speed: Annotated[float, Field(gt=0)] | None = None
-    """What it is set to [1/min]; none: nobody has said."""
+    """Commanded speed [1/min]; none: not set."""
     feed_override: Annotated[int, Field(ge=FEED_OVERRIDES[0], le=FEED_OVERRIDES[1])] = 100
     """Of programmed feeds [%]."""
     rapid_override: Annotated[int, Field(ge=RAPID_OVERRIDES[0], le=RAPID_OVERRIDES[1])] = 100
     """Of rapids [%]."""
     alarm: str = ""
-    """An alarm that is active when the operator comes: ``hard-limit`` for an axis on its switch."""
+    """An alarm that is active when the scene begins: ``hard-limit`` for an axis on its switch."""
 
 
 class PictureTable(Table):
@@ -166,7 +166,7 @@ class SceneFile(Table):
     story: Text
     """What the operator reads first."""
     language: Language = "en"
-    """What labels, messages and texts are in, unless ``--language`` says otherwise."""
+    """Language of labels, messages and texts, unless ``--language`` names another."""
     job: JobFile
     """Program, machine, the part's true zero, stock and tools; as in a job file."""
     start: StartTable = StartTable()
@@ -185,7 +185,7 @@ class SceneFile(Table):
     """Machine time from the first touch after which the scene is judged [s]."""
     picture: PictureTable = PictureTable()
     guide: bool = False
-    """Whether the page tells who plays for the first time what to press; in scenes where that spoils nothing."""
+    """Whether the page shows first-time users what to press; for scenes where that gives nothing away."""
     solution: tuple[StepTable, ...] = ()
     """A scripted operator who reaches full points."""
     mistake: tuple[StepTable, ...] = ()

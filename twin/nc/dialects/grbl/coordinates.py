@@ -9,7 +9,13 @@ from twin.nc.control.codes import Action
 from twin.nc.control.control import Control, integer_of
 from twin.nc.dialects.grbl.memory import SYSTEMS, memory_of
 from twin.nc.iso.base import require_feed_of_block
-from twin.nc.iso.offsets import machine_zero, note_written, refuse_empty_preset, table_zero
+from twin.nc.iso.offsets import (
+    machine_zero,
+    note_written,
+    place_from_machine_zero,
+    refuse_empty_preset,
+    table_zero,
+)
 from twin.nc.text.blocks import Statement, Word
 
 _Z = 2
@@ -170,11 +176,8 @@ def store_home(place: int) -> Action:
     """G28.1, G30.1: where the axes are is the stored position from now on."""
 
     def action(control: Control) -> None:
-        zero, names = machine_zero(control, ("G28.1", "G30.1")[place]), control.settings.axes.names
-        memory_of(control).homes[place] = [
-            value - zero.get(name, 0.0)
-            for name, value in zip(names, control.motion.part, strict=True)
-        ]
+        homes = memory_of(control).homes
+        homes[place] = place_from_machine_zero(control, ("G28.1", "G30.1")[place])
 
     return action
 

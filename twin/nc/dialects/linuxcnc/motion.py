@@ -19,7 +19,7 @@ from twin.nc.iso.circular import (
     refuse_missing_center,
     sweep_arc,
 )
-from twin.nc.iso.offsets import machine_zero
+from twin.nc.iso.offsets import machine_zero, place_from_machine_zero
 from twin.nc.path.feed_rates import FeedMode
 from twin.nc.text.blocks import Word
 
@@ -146,12 +146,8 @@ def store_home(place: int) -> Action:
     """G28.1, G30.1: where the axes are is the stored position from now on."""
 
     def action(control: Control) -> None:
-        zero = machine_zero(control, ("G28.1", "G30.1")[place])
-        names = control.settings.axes.names
-        memory_of(control).homes[place] = [
-            value - zero.get(name, 0.0)
-            for name, value in zip(names, control.motion.part, strict=True)
-        ]
+        homes = memory_of(control).homes
+        homes[place] = place_from_machine_zero(control, ("G28.1", "G30.1")[place])
 
     return action
 
