@@ -4,7 +4,7 @@ import numpy as np
 
 from twin.cutting.forces.direction import tool_force
 from twin.cutting.forces.materials import Kienzle
-from twin.cutting.forces.mean_force import MeanPieces, Pieces, cutting_load, each_alone
+from twin.cutting.forces.mean_force import CutPieces, MeanPieces, cutting_load, each_alone
 from twin.cutting.watching.cut_log import CutLog
 from twin.cutting.watching.events import Stretches
 from twin.job.job_file import ToolTable
@@ -71,7 +71,7 @@ class CutTotals:
         """Enter what there is of the mean that a tool's last stretches belong to: another one comes, or none."""
         self._note_means(self._pieces.end(), tool)
 
-    def _note_means(self, pieces: Pieces, tool: ToolTable) -> None:
+    def _note_means(self, pieces: CutPieces, tool: ToolTable) -> None:
         pieces, force = pieces[pieces.removed > 0.0], None
         if not len(pieces):
             return

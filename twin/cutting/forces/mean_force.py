@@ -16,7 +16,7 @@ from twin.units import SECONDS_PER_MINUTE
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Pieces(Columns):
+class CutPieces(Columns):
     """What n pieces of the tool's path took off, as columns.
 
     Attributes:
@@ -44,14 +44,14 @@ class Pieces(Columns):
         return np.minimum(width, diameter)
 
 
-def each_alone(stretches: Stretches, duration: FloatArray) -> Pieces:
+def each_alone(stretches: Stretches, duration: FloatArray) -> CutPieces:
     """Every stretch as a piece.
 
     Args:
         duration: How long each took, shape (n,) [s].
     """
     path = stretches.path
-    return Pieces(stretches.line, path, duration, stretches.removed, path * stretches.depth)
+    return CutPieces(stretches.line, path, duration, stretches.removed, path * stretches.depth)
 
 
 class MeanPieces:
@@ -68,10 +68,10 @@ class MeanPieces:
             cell: Side of the material's cells [mm].
         """
         self._cell = cell
-        self._open = np.zeros(len(dataclasses.fields(Pieces)))
+        self._open = np.zeros(len(dataclasses.fields(CutPieces)))
         self._whole = False
 
-    def add(self, stretches: Pieces, turn: float) -> Pieces:
+    def add(self, stretches: CutPieces, turn: float) -> CutPieces:
         """Take in stretches that follow the last ones.
 
         Args:
@@ -80,12 +80,14 @@ class MeanPieces:
         Returns:
             The pieces that have ended.
         """
-        columns = np.column_stack([getattr(stretches, f.name) for f in dataclasses.fields(Pieces)])
+        columns = np.column_stack(
+            [getattr(stretches, f.name) for f in dataclasses.fields(CutPieces)]
+        )
         ended = np.zeros((2 * len(columns), columns.shape[1]))
         count, self._whole = _gather(columns, self._open, self._whole, (self._cell, turn), ended)
         return _pieces(ended[:count])
 
-    def end(self) -> Pieces:
+    def end(self) -> CutPieces:
         """What is left of a line that is shorter than a piece; what follows begins another one."""
         only = self._open[2] > 0.0 and not self._whole
         rest = _pieces(self._open[None].copy() if only else np.zeros((0, len(self._open))))
@@ -93,8 +95,8 @@ class MeanPieces:
         return rest
 
 
-def _pieces(rows: FloatArray) -> Pieces:
-    return Pieces(rows[:, 0].astype(np.int64), *rows[:, 1:].T)
+def _pieces(rows: FloatArray) -> CutPieces:
+    return CutPieces(rows[:, 0].astype(np.int64), *rows[:, 1:].T)
 
 
 @kernel
@@ -108,7 +110,7 @@ def _gather(
     """Put stretches together.
 
     Args:
-        stretches: The columns of ``Pieces``, shape (n, 5).
+        stretches: The columns of ``CutPieces``, shape (n, 5).
         left: What is left of those before, in the same columns; changed.
         whole: Whether any piece of its line has ended.
         least: Path [mm] and time [s] of a piece.
@@ -154,7 +156,7 @@ class SpindleLoad:
     power: FloatArray
 
 
-def cutting_load(pieces: Pieces, tool: ToolTable, material: Kienzle) -> SpindleLoad:
+def cutting_load(pieces: CutPieces, tool: ToolTable, material: Kienzle) -> SpindleLoad:
     """Mean cutting force and power.
 
     The width of cut ae is what was removed over path and depth. The engagement angle is
