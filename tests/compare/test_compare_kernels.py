@@ -21,7 +21,7 @@ from twin.compare.circular.circle_kernels import (
     widest_gap,
 )
 from twin.compare.contour.blocks import BlockCollector
-from twin.compare.contour.corners import pass_corners
+from twin.compare.contour.corners import MoveEnds, pass_corners
 from twin.compare.statistics import LEAST_EXPONENT, RESOLUTION, Distribution
 from twin.nc.canonical import FloatArray, IntArray
 
@@ -136,10 +136,11 @@ def test_the_way_past_a_corner_is_that_to_the_nearest_stretch(count: int, seed: 
     random = np.random.default_rng(seed)
     corner = random.normal(size=(4, 3))
     sharp = np.array([True, False, True, True])
+    nearest, when = np.full(4, np.inf), np.zeros(4)
+    ends = MoveEnds(corner, sharp, np.zeros((4, 2)), nearest, when)
     point, time = random.normal(size=(count, 3)), 0.001 * np.arange(count)
     place = random.integers(0, 4, count)
-    nearest, when = np.full(4, np.inf), np.zeros(4)
-    pass_corners(corner, sharp, point[0], point, place, time, nearest, when)
+    pass_corners(ends, point[0], point, place, np.zeros(count), time)
     asked, asked_when = np.full(4, np.inf), np.zeros(4)
     before = np.concatenate([point[:1], point[:-1]])
     for i in range(count):

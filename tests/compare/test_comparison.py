@@ -302,6 +302,22 @@ def test_a_rounded_corner_is_measured_from_its_point(rows: int):
     assert corners.p99_um == corners.rounding_um
 
 
+@pytest.mark.parametrize("rows", [90, 700, 100_000])
+def test_a_corner_that_one_move_comes_back_to_is_passed_once(rows: int):
+    """Two turns from the corner on: the first time it is cut off, the two later times hit."""
+    moves = moves_of(line(ZERO, at(50, 0)), arc(at(50, 0), np.array([70.0, 0, 0]), UP, 720.0))
+    asked = setpoints(moves, per_move=2000)
+    joint = asked.position.copy()
+    a, b = asked.position[1960], asked.position[2010]
+    joint[1960:2011] = a + np.linspace(0, 1, 51)[:, None] * (b - a)
+    (ax, ay), (bx, by) = (point[:2] - PART_ZERO[:2] - [50.0, 0.0] for point in (a, b))
+    rounding = abs(ax * by - ay * bx) / np.hypot(bx - ax, by - ay)
+    corners = compare(moves, asked, joint, rows=rows)[0].corners
+    assert corners.count == 1
+    assert corners.rounding_um == pytest.approx(rounding * 1e3, abs=1e-3)
+    assert corners.time_s == pytest.approx(2.0, abs=0.04)
+
+
 @pytest.mark.parametrize("rows", [90, 100_000])
 def test_what_happens_at_a_corner_is_not_counted_for_the_straights(rows: int):
     """0.1 mm a sample: the corner reaches ten samples to either side."""

@@ -1,4 +1,3 @@
-import dataclasses
 import json
 from pathlib import Path
 
@@ -19,15 +18,10 @@ from twin.compare.result import RunSummary, result, write_result
 from twin.compare.verdict import PRINTED_DIGITS, Check, judge
 from twin.errors import ExitCode
 from twin.job.tolerance import BlocksToleranceTable, ToleranceTable
+from twin.recording.alarms import Alarm
 from twin.run.judging.outcome import LOAD_FIGURES
 
-
-@dataclasses.dataclass(frozen=True)
-class Alarm:
-    code: str = "soft-limit"
-    line: int = 7
-    time_s: float = 1.5
-    message: str = "X leaves its travel"
+ALARM = Alarm("soft-limit", 7, 1.5, "X", "X leaves its travel")
 
 
 def figures(contour: float = 12.0, lag: float = 150.0, turn: float = 30.0) -> Figures:
@@ -163,7 +157,7 @@ def test_following_error_is_judged_by_the_kind_of_axis_when_asked_for():
 
 
 def test_an_alarm_outweighs_a_tolerance_and_is_told_first():
-    verdict = judge(figures(), ToleranceTable(contour_um=1.0), [Alarm()])
+    verdict = judge(figures(), ToleranceTable(contour_um=1.0), [ALARM])
     assert (verdict.outcome, verdict.exit_code) == ("alarm", ExitCode.ALARM)
     assert [reason.what for reason in verdict.reasons] == ["soft-limit", "contour_um"]
 
@@ -178,9 +172,9 @@ def summary() -> RunSummary:
 
 def test_the_result_has_every_key_of_the_contract(tmp_path: Path):
     tolerance = ToleranceTable(contour_um=20.0)
-    verdict = judge(figures(), tolerance, [Alarm()])
+    verdict = judge(figures(), tolerance, [ALARM])
     write_result(
-        tmp_path / "result.json", result(summary(), figures(), tolerance, verdict, [Alarm()])
+        tmp_path / "result.json", result(summary(), figures(), tolerance, verdict, [ALARM])
     )
     content = json.loads((tmp_path / "result.json").read_text(encoding="utf-8"))
     assert content["schema"] == 1
@@ -198,7 +192,8 @@ def test_the_result_has_every_key_of_the_contract(tmp_path: Path):
     assert (arc["line"], arc["radius_mm"], arc["circular_deviation_um"]) == (5, 25.0, 3.0)
     assert arc["radial_deviation_um"] == -2.0
     assert content["tolerance"]["contour_um"] == 20.0
-    assert content["alarms"] == [dataclasses.asdict(Alarm())]
+    told = {"code": "soft-limit", "line": 7, "time_s": 1.5, "message": "X leaves its travel"}
+    assert content["alarms"] == [told]
     assert content["cut"] == {"removed_mm3": 10.0}
     assert content["final"] == {"commanded": {"X": 1.0}, "simulated": {"X": None}}
     for key in ("program", "dialect", "machine", "duration_s", "samples", "wall_s"):

@@ -1,6 +1,7 @@
 """Each alarm has a program that provokes it, with the line, the axis and what is kept."""
 
 import json
+from collections.abc import Iterator
 from pathlib import Path
 
 import h5py
@@ -13,6 +14,7 @@ from twin.commands.runs.pictures import ALARMS_OF_CONTACT
 from twin.files.shipped import resource_root
 from twin.run.preparing.preparation import prepare
 from twin.run.progress import no_progress
+from twin.run.results import result_of
 from twin.run.run import Run
 
 pytestmark = pytest.mark.seconds("each program is run up to its alarm, and that is drawn")
@@ -126,6 +128,39 @@ def test_the_alarm_is_raised_at_its_line(name: str):
     (alarm,) = outcome.alarms
     assert (alarm.code, alarm.line) == (code, line)
     assert alarm.message.startswith(message)
+    never_run = [each.what for each in outcome.scope.not_watched if "the alarm" in each.why]
+    ran = "every line" if code == "soft-limit" else f"all behind line {line}"
+    assert never_run == [ran] * alarm.stops
+    if alarm.stops:
+        ran = FIRST_LINE_AFTER.get(name, line)
+        assert {number for number in _lines(result_of(run, outcome)) if number > ran} == set()
+        assert outcome.gouge is None or outcome.gouge.time_s == alarm.time_s
+
+
+def _lines(content: object) -> Iterator[int]:
+    """The lines that a result speaks of."""
+    if isinstance(content, dict):
+        for key, value in content.items():
+            if key in ("line", "worst_line") and isinstance(value, int):
+                yield value
+            yield from _lines(value)
+    elif isinstance(content, list | tuple):
+        for value in content:
+            yield from _lines(value)
+
+
+def test_a_part_that_an_alarm_left_unfinished_is_not_judged(tmp_path: Path):
+    (tmp_path / "a.nc").write_text((FOLDER / "gouge.nc").read_text(encoding="utf-8"))
+    job = (FOLDER / "gouge.toml").read_text(encoding="utf-8").replace("gouge.nc", "a.nc")
+    job = job.replace('"gouge.stl"', f'"{FOLDER}/gouge.stl"')
+    job = job.replace("[nominal]", "[nominal]\nstanding_um = 100.0")
+    (tmp_path / "a.toml").write_text(job + "\n[tolerance]\ncycle_time_s = 1.0\n")
+    outcome = Run(prepare(tmp_path / "a.toml")).execute(None, no_progress)
+    assert [reason.what for reason in outcome.verdict.reasons] == ["gouge"]
+    assert {check.what for check in outcome.verdict.checks} == {"contour_um"}
+    assert outcome.inspection is None
+    assert outcome.gouge is not None
+    assert outcome.gouge.depth_mm == pytest.approx(0.1, abs=2e-3)
 
 
 @pytest.mark.parametrize(

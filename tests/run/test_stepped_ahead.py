@@ -6,7 +6,10 @@ import pytest
 
 from twin import processor
 from twin.files.shipped import resource_root
+from twin.machine.simulation.simulate import simulate
+from twin.motion.setpoints.sampling import settle
 from twin.run.judging.outcome import Outcome
+from twin.run.pipeline import cutting_forces, planned
 from twin.run.preparing.preparation import prepare
 from twin.run.progress import no_progress
 from twin.run.run import Run
@@ -74,6 +77,32 @@ def test_an_alarm_finds_nothing_of_what_was_stepped_beyond_it(tmp_path, monkeypa
         "duration_s",
     ):
         assert repr(getattr(alone, name)) == repr(getattr(beside, name)), name
+
+
+@pytest.mark.seconds("runs a job of two chunks")
+def test_an_alarm_knows_nothing_of_what_was_stepped_behind_it_in_its_own_chunk(
+    tmp_path, monkeypatch
+):
+    monkeypatch.setitem(globals(), "PROGRAM", PROGRAM.replace("F100\n", "F6000\n"))
+    assert outcome(tmp_path, "N40 G01 X-130 F6000", 1, monkeypatch).near_miss is not None
+    stopped = outcome(tmp_path, "N40 G00 X-80\nN45 G00 X-130", 1, monkeypatch)
+    assert [alarm.code for alarm in stopped.alarms] == ["rapid-into-stock"]
+    assert stopped.near_miss is None
+
+
+@pytest.mark.seconds("steps a job whose cut is simulated to its end")
+def test_what_a_process_raises_is_seen_however_far_the_machine_is_ahead():
+    run = Run(prepare(resource_root("programs") / "alarms/fagor8070/spindle_stall.toml"))
+    summary = run.dry_run.summary
+    setpoints = settle(
+        planned(run.dry_run.program, run.preparation), run.machine.file.servo_period_s
+    )
+    process = cutting_forces(run.preparation, summary).process
+    simulation = simulate(run.machine, run.model, setpoints, summary.tools, process=process)
+    *_, last = simulation.watched(list(simulation.stepped()))
+    assert simulation.alarm is not None
+    assert simulation.alarm.code == "spindle-stall"
+    assert last.setpoint.time[-1] == simulation.alarm.time_s
 
 
 @pytest.mark.seconds("runs a job of two chunks")

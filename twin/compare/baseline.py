@@ -100,18 +100,18 @@ def compare_baseline(
             head, lines = read_head(file)
             reasons = _settings_reasons(head.settings, settings or {})
             if axes.names != head.axes:
-                told = f"axes {' '.join(axes.names)}, baseline {' '.join(head.axes)}"
-                reasons.append(Reason("baseline-path", told, 0, 0.0))
+                message = f"axes {' '.join(axes.names)}, baseline {' '.join(head.axes)}"
+                reasons.append(Reason("baseline-path", message, 0, 0.0))
             else:
                 pairs = _Pairs(read_entries(lines, head.axes), entries(chunks), limits)
                 changed = changed_lines(head.source, source) if head.source else []
                 found = _program_reasons(pairs, head.axes, limits)
-                told = list(differences_by_line(found, changed))
-                known = {reason.line for reason in told}
-                told += [
+                differing = list(differences_by_line(found, changed))
+                known = {reason.line for reason in differing}
+                differing += [
                     each for each in _code_reasons(head.source, source) if each.line not in known
                 ]
-                reasons += _first_of(iter(told))
+                reasons += _first_of(iter(differing))
     except (ValueError, IndexError, TypeError) as error:
         message = f"{path}: is not a baseline of this twin: {error}; --update-baseline stores one"
         raise UsageError(message) from error
@@ -245,7 +245,7 @@ class _Pairs:
             try:
                 entry = next(self._sources[side], None)
             except ProgramError as error:
-                # Told when all that came before it has been compared.
+                # Reported when all that came before it has been compared.
                 self._broken = error
                 return
             if entry is None:

@@ -153,7 +153,7 @@ class Comparison:
         rows = self._blocks.add(self._moves, place, line, error, setpoint.time)
         self._keep_worst(rows, setpoint)
         if place is not None:
-            self._corners.add(point, place, setpoint.time)
+            self._corners.add(point, place, fraction, setpoint.time)
             at_corner = self._corners.at_corner(place, fraction)
             self._features.add(self._moves, place, at_corner, error, setpoint.time)
             self._arcs.add(
@@ -222,11 +222,11 @@ class Comparison:
         least = min((w.error_um for w in self._worst.values()), default=0.0)
         floor = least if len(self._worst) >= WORST_PLACES else -1.0
         known = self._blocks.columns
-        for row in rows[(known.greatest[rows] > floor) & (known.when[rows] >= setpoint.time[0])]:
+        for row in rows[(known.greatest[rows] >= floor) & (known.when[rows] >= setpoint.time[0])]:
             line, error = int(known.block[row]) // 2, float(known.greatest[row])
             before = self._worst.get(line)
-            if before is None or error > before.error_um:
-                when = float(known.when[row])
+            when = float(known.when[row])
+            if before is None or (error, -when) > (before.error_um, -before.time_s):
                 sample = int(np.searchsorted(setpoint.time, when))
                 position = setpoint.position[sample] - self._part_zero
                 self._worst[line] = WorstPlace(
@@ -236,15 +236,18 @@ class Comparison:
         self._worst = {place.line: place for place in kept}
 
     def _drop_passed(self) -> None:
-        """Let go of the moves that neither the tool nor the search can come back to."""
+        """Let go of the moves that neither the tool nor the search can come back to.
+
+        The one before these is kept: its end may be a corner that the tool is passing.
+        """
         reached = min(int(self._state[0]), max(int(self._late.move[0]), 0))
         self._arcs.finish(reached)
-        passed = reached - self._first
+        passed = reached - 1 - self._first
         if passed > 0 and 2 * passed >= len(self._moves):
             self._corners.drop(self._moves, passed)
             self._moves = concatenate([self._moves[passed:]], self.axes)
             self._path = drop_moves(self._path, passed)
-            self._first = reached
+            self._first += passed
 
     def result(self) -> Figures:
         """The figures of everything added so far; more may be added."""

@@ -27,18 +27,20 @@ def bin_of(bits):
 
 
 @kernel
-def count_into(values, bits, histogram):
+def count_into(values, bits, histogram, squares):
     """Count values into a histogram.
 
     Args:
         values: Shape (n,).
         bits: The same memory seen as int64, shape (n,).
         histogram: Counts by bin, added to, shape (BINS,).
+        squares: Sum of the squares of those before, which is gone on with value by value: however a
+            stream is divided, it comes to the same bits.
 
     Returns:
         Index of the greatest magnitude (the first of several) and the sum of the squares.
     """
-    worst, greatest, squares = 0, -1.0, 0.0
+    worst, greatest = 0, -1.0
     for i in range(len(values)):
         size = abs(values[i])
         histogram[bin_of(bits[i])] += 1
@@ -75,12 +77,13 @@ class Distribution:
         if not len(values):
             return None
         values = np.ascontiguousarray(values, np.float64)
-        worst, squares = count_into(values, values.view(np.int64), self._histogram)
+        worst, self._squares = count_into(
+            values, values.view(np.int64), self._histogram, self._squares
+        )
         greatest = abs(float(values[worst]))
         greater = self.count == 0 or greatest > self.greatest
         self.count += len(values)
         self.greatest = max(self.greatest, greatest)
-        self._squares += squares
         return int(worst) if greater else None
 
     def copy(self) -> "Distribution":

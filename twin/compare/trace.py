@@ -30,10 +30,11 @@ class Trace:
         self._origin = part_frame.program_zero(part_zero)
         self._part_zero = np.asarray(part_zero, np.float64)
         self._group = 1
-        self._kept = np.zeros((0, _FIRST_AXIS_COLUMN + 3 * len(axes)))
-        self._open = self._kept[:0]
+        nothing = np.zeros((0, _FIRST_AXIS_COLUMN + 3 * len(axes)))
+        self._kept, self._count = [nothing], 0
+        self._open = nothing
         self._open_count = 0
-        self._last = self._kept[:0]
+        self._last = nothing
 
     def add(self, samples: Samples, error_um: FloatArray, lower: FloatArray | float = 0.0) -> None:
         """Take in the next chunk.
@@ -47,7 +48,7 @@ class Trace:
         count = len(samples)
         if not count:
             return
-        while len(self._kept) + (self._open_count + count) // self._group > 2 * POINTS:
+        while self._count + (self._open_count + count) // self._group > 2 * POINTS:
             self._merge()
         head = min((self._group - self._open_count) % self._group, count)
         if head:
@@ -60,7 +61,9 @@ class Trace:
         if self._open_count == self._group:
             whole = np.concatenate([self._open, whole])
             self._open, self._open_count = self._open[:0], 0
-        self._kept = np.concatenate([self._kept, whole])
+        if len(whole):
+            self._kept.append(whole)
+            self._count += len(whole)
         if tail < count:
             row = tail + _greatest_of(error_um[tail:])
             self._put_into_open(self._of(samples, error_um, lower, row), count - tail)
@@ -74,12 +77,14 @@ class Trace:
 
     def _merge(self) -> None:
         """Make one group of every two."""
-        if len(self._kept) % 2:
-            self._kept, last = self._kept[:-1], self._kept[-1:]
+        kept = np.concatenate(self._kept)
+        if len(kept) % 2:
+            kept, last = kept[:-1], kept[-1:]
             both = np.concatenate([last, self._open])
             self._open = both[_greatest_of(both[:, _ERROR_COLUMN])]
             self._open_count += self._group
-        self._kept = self._kept[_worst_rows(self._kept[:, _ERROR_COLUMN], 2)]
+        kept = kept[_worst_rows(kept[:, _ERROR_COLUMN], 2)]
+        self._kept, self._count = [kept], len(kept)
         self._group *= 2
 
     def _of(
@@ -101,9 +106,9 @@ class Trace:
         )
 
     def _rows(self) -> FloatArray:
-        if not self._open_count:
-            return self._kept
-        return np.concatenate([self._kept, self._open, self._last])
+        rest = [self._open, self._last] if self._open_count else []
+        self._kept = [np.concatenate(self._kept)]
+        return np.concatenate([*self._kept, *rest]) if rest else self._kept[0]
 
     @property
     def time(self) -> FloatArray:

@@ -44,7 +44,7 @@ class ToolBreak:
     def alarm(self) -> Alarm:
         """As the run's verdict calls it."""
         message = f"tool {self.tool} broke: {self.reason}"
-        return Alarm("tool-broken", self.line, self.time_s, "", message)
+        return Alarm("tool-broken", self.line, self.time_s, "", message, stops=False)
 
 
 class SpindleTurning(NamedTuple):

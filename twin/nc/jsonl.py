@@ -50,7 +50,7 @@ def text_lines(interpretation: Interpretation) -> Iterator[str]:
 def json_lines(interpretation: Interpretation) -> Iterator[str]:
     """The records as JSON, one object a line: moves chunk by chunk, the rest record by record."""
     axes = interpretation.settings.axes
-    count, length, turn, told = 0, 0.0, 0.0, 0
+    count, length, turn, reported = 0, 0.0, 0.0, 0
     try:
         for chunk in interpretation.chunks():
             yield from _chunk_lines(chunk, interpretation.compensated)
@@ -58,9 +58,9 @@ def json_lines(interpretation: Interpretation) -> Iterator[str]:
             turning = chunk.moves.feed_unit == FeedUnit.DEG_PER_MIN
             length += float(chunk.moves.length[~turning].sum())
             turn += float(chunk.moves.length[turning].sum())
-            told = yield from _new_warnings(interpretation, told)
+            reported = yield from _new_warnings(interpretation, reported)
     except ProgramError as error:
-        yield from _new_warnings(interpretation, told)
+        yield from _new_warnings(interpretation, reported)
         yield _json(_diagnostic(error.diagnostic))
         raise
     end: Record = {
@@ -74,9 +74,9 @@ def json_lines(interpretation: Interpretation) -> Iterator[str]:
     yield _json(end)
 
 
-def _new_warnings(interpretation: Interpretation, told: int) -> Generator[str, None, int]:
+def _new_warnings(interpretation: Interpretation, reported: int) -> Generator[str, None, int]:
     warnings = interpretation.diagnostics
-    for diagnostic in warnings[told:]:
+    for diagnostic in warnings[reported:]:
         yield _json(_diagnostic(diagnostic))
     return len(warnings)
 

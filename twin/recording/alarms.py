@@ -48,6 +48,7 @@ class Alarm:
         time_s: When, from the start of the program [s]; 0 for what is seen before motion starts.
         axis: Name of the axis, empty where it concerns the whole machine.
         between: Names of the two bodies that met; empty: none did.
+        stops: Whether it ends the run; a tool that breaks does not.
     """
 
     code: AlarmCode
@@ -56,6 +57,7 @@ class Alarm:
     axis: str
     message: str
     between: tuple[str, ...] = ()
+    stops: bool = True
 
     def __str__(self) -> str:
         """One line for a person."""

@@ -1,5 +1,6 @@
 """What the tool does to the stock along a run, and the alarms of what must not meet it."""
 
+import copy
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -104,22 +105,46 @@ class Machining(Observer):
         cutter = self._cutter
         if cutter is None:
             return samples
-        move = samples.setpoint.move
-        rapid = self._summary.is_rapid(move)
-        standing = self._summary.standing(samples.setpoint)
-        # The nominal part is looked at with the samples that cut.
-        cutter.add(samples, rapid, standing, goes_on=self._nominal is None)
-        self._look_at_stops(samples)
+        uncut = copy.deepcopy(cutter) if self._gouge_stops else None
+        self._cut(cutter, samples)
         found = None if self._nominal is None else self._nominal.look(samples)
-        if found is not None and self._gouge_stops:
-            gouge, sample = found
-            self.alarm = gouge_alarm(gouge, cutter.plan.at(int(move[sample])))
-            return samples[: sample + 1]
+        if found is not None and uncut is not None:
+            return self._stop_at_gouge(uncut, samples, *found)
+        self._look_at_stops(samples)
         self._note_alarm()
         if self.alarm is None:
             return samples
         end = int(np.searchsorted(samples.setpoint.time, self.alarm.time_s, side="right"))
         return samples[:end]
+
+    def _cut(self, cutter: Cutter, samples: Samples) -> None:
+        rapid = self._summary.is_rapid(samples.setpoint.move)
+        standing = self._summary.standing(samples.setpoint)
+        # The nominal part is looked at with the samples that cut.
+        cutter.add(samples, rapid, standing, goes_on=self._nominal is None)
+
+    def _stop_at_gouge(
+        self, uncut: Cutter, samples: Samples, gouge: NominalGouge, sample: int
+    ) -> Samples:
+        """Cut up to where the tool goes too deep into the nominal part, and no farther.
+
+        Args:
+            uncut: The cutter before the chunk.
+            gouge: What the whole chunk would have come to there.
+            sample: When the tool went too deep.
+
+        Returns:
+            The samples until then.
+        """
+        assert self._nominal is not None
+        samples = samples[: sample + 1]
+        self._cutter = self._nominal.cutter = uncut
+        self._cut(uncut, samples)
+        self._look_at_stops(samples)
+        found = self._nominal.look(samples)
+        self._nominal.worst = gouge if found is None else found[0]
+        self.alarm = gouge_alarm(self._nominal.worst, uncut.tool)
+        return samples
 
     def _look_at_stops(self, samples: Samples) -> None:
         """See whether the tool is in the cut where the program stops it, within a chunk."""

@@ -13,7 +13,7 @@ from twin.errors import ConfigError
 from twin.machine.description.config import MachineConfig
 from twin.machine.model.model import MachineModel
 from twin.machine.simulation.growth import Growth
-from twin.machine.simulation.simulate import Load, simulate
+from twin.machine.simulation.simulate import Load, Stepped, simulate
 from twin.motion.planner import plan
 from twin.motion.setpoints.sampling import settle
 from twin.motion.setpoints.setpoints import Setpoints
@@ -82,13 +82,12 @@ class PlannedMoves:
         return taken
 
 
-class _Stepped(NamedTuple):
-    """A chunk of samples with what was known when it was stepped."""
+class _Ahead(NamedTuple):
+    """A chunk with what was known when it was stepped."""
 
-    samples: Samples
+    stepped: Stepped
     moves: list[Moves]
     planned_s: float | None
-    near_miss: NearMiss | None
 
 
 class ProgramMotion(MachineMotion):
@@ -119,7 +118,6 @@ class ProgramMotion(MachineMotion):
         self._setpoints = setpoints
         self._moves = moves
         self._planned_until_s: float | None = None
-        self._near_miss: NearMiss | None = None
         period_s = model.machine.file.servo_period_s
         self._simulation = simulate(
             model.machine,
@@ -133,7 +131,7 @@ class ProgramMotion(MachineMotion):
     @property
     def near_miss(self) -> NearMiss | None:
         """The closest that the tool's side and the part's came without touching."""
-        return self._near_miss
+        return self._simulation.near_miss
 
     def __iter__(self) -> Iterator[Samples]:
         """Yield chunks of samples, the last one that of an alarm if there is one.
@@ -141,19 +139,22 @@ class ProgramMotion(MachineMotion):
         Raises:
             SimulationError: The simulation failed.
         """
-        for stepped in made_ahead(self._stepped()):
-            self.planned_s, self._near_miss = stepped.planned_s, stepped.near_miss
-            if self._moves is not None:
-                for moves in stepped.moves:
-                    self._moves.expect(moves)
-            yield stepped.samples
-        self.alarm, self._near_miss = self._simulation.alarm, self._simulation.near_miss
+        yield from self._simulation.watched(self._arriving())
+        self.alarm = self._simulation.alarm
 
-    def _stepped(self) -> Iterator[_Stepped]:
-        simulation = self._simulation
-        for samples in simulation:
+    def _arriving(self) -> Iterator[Stepped]:
+        """Take note of what was planned for each chunk when it comes to those who look."""
+        for ahead in made_ahead(self._ahead()):
+            self.planned_s = ahead.planned_s
+            if self._moves is not None:
+                for moves in ahead.moves:
+                    self._moves.expect(moves)
+            yield ahead.stepped
+
+    def _ahead(self) -> Iterator[_Ahead]:
+        for stepped in self._simulation.stepped():
             moves = [] if self._moves is None else self._moves.take()
-            yield _Stepped(samples, moves, self._planned_until_s, simulation.near_miss)
+            yield _Ahead(stepped, moves, self._planned_until_s)
 
     def _noted(self) -> Iterator[Setpoints]:
         for chunk in self._setpoints:

@@ -61,10 +61,14 @@ class ToolPlan:
         Args:
             move: Move number of each sample, never falling, shape (n,).
         """
-        number = np.searchsorted(self.first_move, np.maximum(move, 0), side="right") - 1
-        ends = [*(np.flatnonzero(np.diff(number)) + 1).tolist(), len(move)]
+        if not len(move):
+            return []
+        first, last = (
+            bisect.bisect_right(self.first_move, max(int(end), 0)) for end in move[[0, -1]]
+        )
+        begins = np.searchsorted(move, self.first_move[first:last]).tolist()
+        ends = itertools.pairwise([0, *begins, len(move)])
+        tools = self.tools[first - 1 : last]
         return [
-            (slice(first, end), self.tools[int(number[first])])
-            for first, end in itertools.pairwise([0, *ends])
-            if first < end
+            (slice(*run), tool) for run, tool in zip(ends, tools, strict=True) if run[0] < run[1]
         ]

@@ -1,5 +1,6 @@
 """The worst blocks are the same whether all are remembered or few."""
 
+import dataclasses
 import itertools
 
 import numpy as np
@@ -56,6 +57,8 @@ def test_few_blocks_remembered_are_the_worst_of_all(
     kept = np.argsort(-few.max_um)[:REPORTED]
     for name in ("line", "rapid", "max_um", "time_s"):
         assert getattr(few, name)[kept].tolist() == getattr(every, name)[worst].tolist()
+    whole, _ = figures(place, error, len(place), REMEMBERED)
+    np.testing.assert_equal(dataclasses.asdict(few), dataclasses.asdict(whole))
     for first, last in RANGES:
         assert _greatest(few, first, last) == _greatest(every, first, last)
     assert _greatest_of(few, few.rapid) == _greatest_of(every, every.rapid)

@@ -11,6 +11,7 @@ from tests.cutting.conftest import samples
 from twin.cutting.cut import Cutter
 from twin.cutting.heights.height_map import HeightMap, blank
 from twin.cutting.heights.part import part_mesh, write_stl
+from twin.cutting.heights.surface_mesh import surface_mesh
 from twin.job.job_file import StockTable, ToolTable
 from twin.nc.canonical import FloatArray
 from twin.toolpath.part_frame import PartFrame
@@ -136,6 +137,21 @@ def test_a_slot_through_the_edge_keeps_the_edge_beside_it() -> None:
     beside = np.abs(vertices[:, 1] - 0.1) > 2.25
     assert (vertices[edge & beside, 2] == 0.0).all()
     assert (vertices[edge & (np.abs(vertices[:, 1] - 0.1) < 1.75), 2] == -3.0).all()
+
+
+def test_a_helix_across_the_edge_leaves_the_edge_as_low_as_its_floor() -> None:
+    tool = ToolTable(number=1, diameter=4.0)
+    cutter = Cutter(
+        BOX.model_copy(update={"cell": 0.5}), tool, PartFrame(None, (0.0, 0.0)), np.zeros(3)
+    )
+    turn = np.linspace(0.0, 4 * np.pi, 1441)
+    path = np.column_stack(
+        [9.0 * np.cos(turn) - 15.0, 9.0 * np.sin(turn), -3.0 + 0.2 * turn / np.pi]
+    )
+    cutter.add(samples(path), np.zeros(len(path), np.bool_))
+    mesh = surface_mesh(cutter.map)
+    vertices = mesh.vertices(cutter.map)[mesh.cell >= 0]
+    assert vertices[:, 2].min() == pytest.approx(-3.0, abs=0.05)
 
 
 def wall_points(mesh: trimesh.Trimesh) -> FloatArray:

@@ -79,6 +79,12 @@ def test_an_ordinary_cut_draws_nothing(tmp_path: Path) -> None:
     assert outcome.scope.tools_unused == (2,)
 
 
+def test_what_a_table_throws_off_far_from_its_axis_is_no_tolerance_too_wide(tmp_path: Path) -> None:
+    """3 mm along X, Y and Z, and 2 degrees of C over half a metre and more."""
+    outcome = run(tmp_path, HEAD + CUT + "M30\n", {"more": "[tolerance]\ncontour_um = 20e3"})
+    assert not codes(outcome)
+
+
 SLIPS: dict[str, tuple[str, dict[str, str], str, int]] = {
     "cut in the air": (HEAD + "G1 Z5. F600.\nG1 X9.\nM30\n", {}, "nothing-cut", 4),
     "spindle stopped in the slot": (
@@ -123,6 +129,9 @@ SLIPS: dict[str, tuple[str, dict[str, str], str, int]] = {
     "a line's tolerance of a metre": (
         HEAD + CUT + "M30\n", {"more": "[[tolerance.blocks]]\nlines = [6, 6]\ncontour_um = 1e6"},
         "tolerance-too-wide", 1,
+    ),
+    "a table's tolerance of a turn": (
+        HEAD + CUT + "G1 C5. F600.\nM30\n", {"more": "[tolerance]\nfollowing_mdeg = 360e3"}, "tolerance-too-wide", 1,
     ),
     "lines without motion": (
         HEAD + CUT + "M30\n",

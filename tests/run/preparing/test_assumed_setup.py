@@ -458,3 +458,43 @@ def test_the_diameter_of_a_path_is_that_of_the_tool_in_the_spindle(tmp_path: Pat
     made, _ = raw(tmp_path, f"G21 G90\nS900 M3\n(TOOL DIAMETER: 3.1 mm)\n{path}{END}")
     assert made.job.file.tools[0].diameter == 3.1
     assert np.isclose(made.settings.tools[1].radius, 1.55)
+
+
+def test_what_is_written_for_cutviewer_tells_stock_zero_and_tools(tmp_path: Path) -> None:
+    text = (
+        "%\n(TOOL/MILL,6.35,0.00,0.00,0.00)\n(FILENAME: tray.c2d)\n(STOCK/BLOCK, 120.00, 80.00, 18.00, 60.00, 40.00, 18.00)\n"
+        "G90\nG21\n(TOOL/MILL,6.35, 0.00, 0.00, 0.00)\n()\nM05\n(TOOL CHANGE)\nM6T201\nM03S10000\n(PREPOSITION)\n"
+        "G0X-40.000Y-20.000\nZ2.000\nG1Z-2.000F300.0\nX40.000F1200.0\nG0Z10.000\n(TOOL/MILL,3.0,1.50,0.00,0.00)\n()\nM05\n"
+        "(TOOL CHANGE)\nM6T202\nM03S10000\nG0X0Y0\nZ2.000\nG1Z-1.000F300.0\nX10.0\nG0Z10.000\nM05\nM02\n%\n"
+    )
+    made, _ = raw(tmp_path, text)
+    tools = [(tool.number, tool.kind, tool.diameter) for tool in made.job.file.tools]
+    assert tools == [(201, "flat", 6.35), (202, "ball", 3.0)]
+    stock = made.job.file.stock
+    assert stock is not None
+    assert stock.size == (120.0, 80.0, 18.0)
+    assert stock.position == (0.0, 0.0, 0.0)
+
+
+def test_a_short_bar_of_a_comment_keeps_holder_and_table_apart(tmp_path: Path) -> None:
+    drill = "G98 G81 X10. Y0. Z8. R22. F150.\nX30.\nG80\n"
+    text = (
+        "%\nO27\n(T1 D=6. - DRILL)\n(STOCK DIA 40. L 60.)\nG90 G94 G17 G21\nG53 G0 Z0.\nT1 M6\nS2500 M3\nG54\n"
+        f"G0 X10. Y0. A0.\nG43 Z40. H1\n{drill}G0 A90.\n{drill}G53 G0 Z0.\nM30\n%\n"
+    )
+    made, assumed = raw(tmp_path, text)
+    assert "held 20 mm before the table" in "; ".join(assumed.assumptions)
+    chain = made.machine.part_frame.chain
+    assert chain is not None
+    assert made.job.file.part_zero["X"] == pytest.approx(float(chain.table[0]) + 40.0)
+
+
+def test_rows_of_a_list_in_columns_are_of_their_own_tools(tmp_path: Path) -> None:
+    text = (
+        "%\nO0056\n(TOOL NO.   DESCRIPTION      DIA.     H    D)\n(   3       FLAT ENDMILL     12.00    3    3)\n"
+        "(   8       CENTER DRILL      3.00    8    8)\nG90 G94 G17 G21\nT3 M6\nS3000 M3\nG54 G0 X-15. Y0.\nG43 Z15. H3\n"
+        "G1 Z-2. F200.\nX40. F600.\nG0 Z15.\nT8 M6\nS3000 M3\nG0 X10. Y10.\nG43 Z15. H8\nG81 Z-1. R2. F100.\nG80\nM30\n%\n"
+    )
+    made, _ = raw(tmp_path, text)
+    tools = [(tool.number, tool.kind, tool.diameter) for tool in made.job.file.tools]
+    assert tools == [(3, "flat", 12.0), (8, "chamfer", 3.0)]

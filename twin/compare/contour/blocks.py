@@ -72,47 +72,57 @@ class BlockCollector:
             time: Shape (n,) [s].
 
         Returns:
-            The rows of the blocks that the tool was in, each once.
+            The rows of the blocks that the tool was in and that are not forgotten yet, each once, by block.
         """
-        block = 2 * line
+        block, arc = 2 * line, np.zeros(len(line), np.bool_)
         if place is not None:
             block += moves.motion[place] == Motion.RAPID
+            arc = moves.shape[place] == Shape.ARC
         entered = np.flatnonzero(np.diff(block, prepend=NOBODY))
-        blocks, which = np.unique(block[entered], return_inverse=True)
-        rows = self._rows_of(blocks)
-        entered_rows = rows[which]
-        if place is not None:
-            here = np.flatnonzero(np.diff(place, prepend=NOBODY))
-            arcs = here[moves.shape[place[here]] == Shape.ARC]
-            self.columns.arc[entered_rows[np.searchsorted(entered, arcs, side="right") - 1]] = True
-        self._latest = collect(
-            np.repeat(entered_rows, np.diff(entered, append=len(block))), error,
-            error.view(np.int64), time, self._latest, self._open, self.columns,
-        )  # fmt: skip
-        return rows
+        stays, has_arc = block[entered], np.logical_or.reduceat(arc, entered)
+        ends, first, bits = np.append(entered, len(block)), 0, error.view(np.int64)
+        while first < len(stays):
+            rows = self._rows_of(stays[first:])
+            last = first + len(rows)
+            self.columns.arc[rows[has_arc[first:last]]] = True
+            here = slice(ends[first], ends[last])
+            self._latest = collect(
+                np.repeat(rows, np.diff(ends[first : last + 1])), error[here], bits[here],
+                time[here], self._latest, self._open, self.columns,
+            )  # fmt: skip
+            first = last
+        known = self._row_of
+        return np.array([known[b] for b in np.unique(stays).tolist() if b in known], np.int64)
 
-    def _rows_of(self, blocks: IntArray) -> IntArray:
-        """The rows of blocks, new ones for those that have none."""
-        new = self._unknown(blocks)
-        if len(self._row_of) + len(new) > 2 * self._remembered:
-            self._forget(blocks)
-            new = self._unknown(blocks)
-        first = len(self._row_of)
-        self._grow(first + len(new))
-        self.columns.block[first : first + len(new)] = new
-        self._row_of.update((block, first + index) for index, block in enumerate(new))
-        return np.array([self._row_of[block] for block in blocks.tolist()], np.int64)
+    def _rows_of(self, stays: IntArray) -> IntArray:
+        """The rows of the blocks that the tool comes to in turn, new ones for those that have none.
 
-    def _unknown(self, blocks: IntArray) -> list[int]:
-        return [block for block in blocks.tolist() if block not in self._row_of]
+        They end before the block that is one too many. Others are forgotten when the tool has come to it, so that it
+        does not matter how the samples are divided into chunks.
+        """
+        row_of, most = self._row_of, 2 * self._remembered
+        if len(row_of) >= most and int(stays[0]) not in row_of:
+            self._forget()
+            row_of = self._row_of
+        count, new, rows = len(row_of), [], []
+        for block in stays.tolist():
+            if block not in row_of:
+                if rows and len(row_of) >= most:
+                    break
+                row_of[block] = len(row_of)
+                new.append(block)
+            rows.append(row_of[block])
+        self._grow(len(row_of))
+        self.columns.block[count : len(row_of)] = new
+        return np.array(rows, np.int64)
 
-    def _forget(self, needed: IntArray) -> None:
-        """Let go of all but the worst blocks, those needed now, and those that the tool is in."""
+    def _forget(self) -> None:
+        """Let go of all but the worst blocks, and those that the tool is in."""
         count = len(self._row_of)
         block = self.columns.block[:count]
         worst_first = np.lexsort((block, -self.columns.greatest[:count]))
         _, worst_apart = np.unique(self._judged_with(block)[worst_first], return_index=True)
-        kept = np.isin(block, needed)
+        kept = np.zeros(count, np.bool_)
         kept[worst_first[: self._remembered]] = True
         kept[worst_first[worst_apart]] = True
         open_row = self._open.row

@@ -76,9 +76,11 @@ def follow(path, first, point, commanded, reach_s, state, found):
     """
     move, u = int(state[0]) - first, state[1]
     x0, y0, z0, error = state[2], state[3], state[4], state[5]
-    now_move, now_u = move, u
-    corner, acute = -1, False
     before, late = len(commanded.time) - len(point), 0
+    now_move, now_u = move, u
+    if before > 0:
+        now_move, now_u = _place(commanded, before - 1, first)
+    corner, acute = -1, False
     for i in range(len(point)):
         x, y, z = point[i, 0], point[i, 1], point[i, 2]
         step = math.sqrt((x - x0) ** 2 + (y - y0) ** 2 + (z - z0) ** 2)
@@ -98,9 +100,11 @@ def follow(path, first, point, commanded, reach_s, state, found):
             high_move, high_u = move, u
         if move != corner:
             corner, acute = move, _begins_acutely(path, move)
-        around = _around_corner(path, move, u, step + error) if acute else 0.0
-        low_move, low_u = moved_along(path, low_move, low_u, -margin - around)
         back_move, back_u = _place(commanded, late, first)
+        around = 0.0
+        if acute:
+            around = _around_corner(path, (move, u), (back_move, back_u), step + error)
+        low_move, low_u = moved_along(path, low_move, low_u, -margin - around)
         if low_move < back_move or (low_move == back_move and low_u < back_u):
             low_move, low_u = back_move, back_u
         error, move, u = nearest_between(
@@ -143,18 +147,21 @@ def _begins_acutely(path, move):
 
 
 @kernel
-def _around_corner(path, move, u, error):
+def _around_corner(path, place, back, error):
     """How far back a place may leap around the acute corner where its move begins [mm].
 
     Both legs of a corner are equally near to a tool between them, at equal distances from its point.
 
     Args:
-        move: Where the place is.
-        u: Where the place is.
+        place: Move and fraction.
+        back: What the search does not reach behind, move and fraction.
         error: Of the tool, with what it may change by in a sample [mm].
     """
+    move, u = place
     beyond = u * speed_at(path, move, u)
     x, y, z, _, _, _, _, _, _ = derivatives(path, move, u)
     other_move, other_u = moved_along(path, move - 1, 1.0, -beyond)
+    if other_move < back[0] or (other_move == back[0] and other_u < back[1]):
+        other_move, other_u = back
     apart = distance_at(path, other_move, other_u, x, y, z)
     return 2.0 * beyond if apart < _GAP * error else 0.0

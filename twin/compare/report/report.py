@@ -26,7 +26,7 @@ _MM3_PER_CM3 = 1000.0
 _HEADINGS = {
     "pass": ("✔", "Pass", "every tolerance holds"),
     "fail": ("✖", "Fail", "what the job asks for does not hold"),
-    "alarm": ("▲", "Alarm", "the machine stopped"),
+    "alarm": ("▲", "Alarm", "the machine raised an alarm"),
 }
 _HOVER_POINTS = 2000
 _HOVER_TEXT = 80

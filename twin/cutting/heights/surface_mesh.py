@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from twin.cutting.heights.height_map import HeightMap
 from twin.cutting.heights.outline import BoolArray
-from twin.cutting.kernels.wall_distance import EQUAL_MM, KNOWN
+from twin.cutting.kernels.wall_distance import EQUAL_MM, share_before
 from twin.cutting.kernels.wall_places import NEARER_CELLS, Vertices, Walls, onto_walls
 from twin.nc.canonical import FloatArray, IntArray
 
@@ -57,20 +57,28 @@ class SurfaceMesh:
         self._along_edge(height_map, moved)
         at = moved.any(axis=-1)
         here = np.stack([self.x[at], self.y[at]])
-        there = np.stack(height_map.outline.snap(*(here + size * moved[at, :2].T)))
+        there = here + size * moved[at, :2].T
+        # Where a wall meets the blank's edge, only the rim follows it up to there.
+        inner = np.ones(z.size, np.bool_)
+        inner[self.rim] = False
+        leaves = inner.reshape(z.shape)[at] & ~height_map.outline.contains(*there)
+        there = np.where(leaves, here, height_map.outline.snap(*there))
         result = np.stack([self.x, self.y, z], axis=-1)
         result[at, :2] = (here + _SHARE * (there - here)).T
-        result[at, 2] += moved[at, 2]
+        result[at, 2] += np.where(leaves, 0.0, moved[at, 2])
         return result
 
     def _heights(self, height_map: HeightMap) -> FloatArray:
         """Height of every vertex, shape (my, mx) [mm]; a rim before which a wall was cut is as low as its foot."""
         result = np.where(self.cell < 0, height_map.bottom, height_map.heights.ravel()[self.cell])
         cells = self.cell.ravel()[self.rim]
-        behind = height_map.behind
-        told, inside = behind.reshape(-1, behind.shape[-1])[cells], self.inside.ravel()[cells]
-        off, own = told[:, 0] - KNOWN, result.ravel()[self.rim]
-        cut = (off > 0.0) & (inside - off > NEARER_CELLS) & (told[:, 1] < own)
+        row, column = np.divmod(cells, height_map.heights.shape[1])
+        told, own = height_map.behind[row, column], height_map.heights[row, column]
+        inside = self.inside[row, column]
+        inwards = height_map.outline.inwards(height_map.x[column], height_map.y[row])
+        widest = np.abs(inwards).max(axis=1)
+        raw = np.where(inside < widest, share_before(inside, widest), 0.0)
+        cut = (told[:, 2] > raw + NEARER_CELLS) & (told[:, 1] < own)
         result.ravel()[self.rim] = np.where(cut, np.minimum(told[:, 3] - EQUAL_MM, own), own)
         return result
 

@@ -95,6 +95,7 @@ class NominalWatch(abc.ABC, Generic[NominalT]):
     """Looks after every chunk whether what it cut reaches into the nominal part.
 
     Attributes:
+        cutter: Cuts the part; another, or a copy of it as it was, may take its place.
         nominal: The nominal part on the grid of the machined one.
         misfit: Why the file can hardly be that of the part; None where it can.
         worst: The deepest so far, None without any.
@@ -111,7 +112,8 @@ class NominalWatch(abc.ABC, Generic[NominalT]):
         Raises:
             ConfigError: Its file cannot be read, or it lies beside the blank.
         """
-        self._cutter, self._frame = cutter, part_frame
+        self.cutter = cutter
+        self._frame = part_frame
         self._corner = part_frame.program_zero(part_zero)
         self._allowed = nominal.gouge_um / UM_PER_MM
         self.worst: NominalGouge | None = None
@@ -167,7 +169,7 @@ class NominalWatch(abc.ABC, Generic[NominalT]):
         """What the cutter's last chunk cut too deep; None where it cut nothing."""
 
     def _tool_path(self, samples: Samples) -> ToolPath:
-        joints, plan, move = samples.real(self._frame), self._cutter.plan, samples.setpoint.move
+        joints, plan, move = samples.real(self._frame), self.cutter.plan, samples.setpoint.move
         tip = self._frame.position(joints, plan.lower(move))
         radius, flute = np.zeros((2, len(tip)))
         for run, tool in plan.runs(move):

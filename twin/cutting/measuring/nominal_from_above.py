@@ -50,19 +50,19 @@ class HeightMapNominalWatch(NominalWatch[HeightMap]):
     """
 
     def _laid(self, file: Path) -> HeightMap:
-        return nominal_map(self._cutter.map, file, self._corner)
+        return nominal_map(self.cutter.map, file, self._corner)
 
     def _is_empty(self) -> bool:
         return not self.nominal.solid().any()
 
     def _outside_share(self) -> float:
-        blank, nominal = self._cutter.map, self.nominal
+        blank, nominal = self.cutter.map, self.nominal
         above = (nominal.heights - blank.heights).clip(min=0.0).sum()
         return float(above / (nominal.heights - nominal.bottom).sum())
 
     def _too_deep(self, samples: Samples) -> Deep | None:  # noqa: ARG002 - the cutter knows where it cut
         """See ``NominalWatch``; walls are noted beside what was cut, and what is left is looked for around it."""
-        row, row_end, column, column_end = self._cutter.changed
+        row, row_end, column, column_end = self.cutter.changed
         if row >= row_end:
             return None
         rows, columns = (
@@ -73,7 +73,7 @@ class HeightMapNominalWatch(NominalWatch[HeightMap]):
         row, column = np.nonzero(depth > self._allowed)
         depth = depth[row, column]
         row, column = row + rows.start, column + columns.start
-        cut, nominal = self._cutter.map, self.nominal
+        cut, nominal = self.cutter.map, self.nominal
         left, top = cut.heights[row, column], nominal.heights[row, column]
         # Where it stands, the wall before it is where it should not be.
         stands = left >= top - self._allowed
@@ -89,7 +89,7 @@ class HeightMapNominalWatch(NominalWatch[HeightMap]):
 
     def _depths(self, rows: slice, columns: slice) -> FloatArray:
         """How deep it is cut into the nominal part over the cells of a window [mm]."""
-        cut, cell = self._cutter.map, self._cutter.map.cell
+        cut, cell = self.cutter.map, self.cutter.map.cell
         heights, behind = cut.heights[rows, columns], cut.behind[rows, columns]
         nominal, walls = self.nominal.heights[rows, columns], self.nominal.behind[rows, columns]
         before = (walls[..., 0] - behind[..., 0]) * cell

@@ -24,8 +24,8 @@ class TriDexelNominalWatch(NominalWatch[TriDexel]):
 
     @property
     def _material(self) -> TriDexelMaterial:
-        assert isinstance(self._cutter.material, TriDexelMaterial)
-        return self._cutter.material
+        assert isinstance(self.cutter.material, TriDexelMaterial)
+        return self.cutter.material
 
     def _laid(self, file: Path) -> TriDexel:
         return nominal_stock(self._material.stock, file, self._corner)

@@ -1,6 +1,7 @@
 """Setpoints through the simulated drives: an open-loop run in chunks of ``mujoco.rollout``."""
 
 from collections.abc import Callable, Iterable, Iterator
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
@@ -19,6 +20,17 @@ from twin.recording.reader import Samples
 from twin.toolpath.tool_plan import ToolPlan
 
 Load = Callable[[Setpoints], FloatArray]
+
+
+class Stepped(NamedTuple):
+    """A chunk of samples that nobody has looked at.
+
+    Attributes:
+        alarm: What the process raised in it; None: nothing.
+    """
+
+    samples: Samples
+    alarm: Alarm | None
 
 
 class Simulation:
@@ -64,11 +76,28 @@ class Simulation:
         Raises:
             SimulationError: MuJoCo warned, or a setpoint or a state is not finite.
         """
+        return self.watched(self.stepped())
+
+    def stepped(self) -> Iterator[Stepped]:
+        """Step the machine along the setpoints, watched by nobody.
+
+        Raises:
+            SimulationError: MuJoCo warned, or a setpoint or a state is not finite.
+        """
         for chunk in self._setpoints:
-            if not len(chunk):
-                continue
-            samples = self._servo.follow(chunk, None if self._load is None else self._load(chunk))
-            self.alarm = self._look(samples)
+            if len(chunk):
+                load = None if self._load is None else self._load(chunk)
+                samples, process = self._servo.follow(chunk, load), self._servo.process
+                yield Stepped(samples, None if process is None else process.alarm)
+
+    def watched(self, stepped: Iterable[Stepped]) -> Iterator[Samples]:
+        """Pass samples on up to an alarm.
+
+        Args:
+            stepped: What ``stepped`` yields, which may be ahead of what is looked at.
+        """
+        for samples, raised in stepped:
+            self.alarm = self._look(samples, raised)
             if self.alarm is None:
                 yield samples
                 continue
@@ -79,13 +108,9 @@ class Simulation:
         if isinstance(self._clearance, ToolClearances):
             self.alarm = self._clearance.finish()
 
-    def _look(self, samples: Samples) -> Alarm | None:
-        process, clearance = self._servo.process, self._clearance
-        found = (
-            None if clearance is None else clearance.look(samples),
-            self._watch.look(samples),
-            None if process is None else process.alarm,
-        )
+    def _look(self, samples: Samples, raised: Alarm | None) -> Alarm | None:
+        met = None if self._clearance is None else self._clearance.look(samples)
+        found = (met, self._watch.look(samples), raised)
         return min(filter(None, found), key=lambda alarm: alarm.time_s, default=None)
 
 

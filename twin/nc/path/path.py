@@ -28,7 +28,7 @@ class Path:
     Attributes:
         position: Where the emitted path has come to, shape (k,) [mm or deg].
         defer: Takes an event that happens behind moves which a dialect holds back; False: it holds none.
-        leads: Makes the moves that lead to the next one, told it, and says whether that is to be made; None: nothing
+        leads: Called with the next move: makes the moves that lead to it, and returns whether it is to be made; None: nothing
             does. The next move begins where they end on the contour, not where the path has come to.
         tool_center: From the tip to the axes; None: moves are those of the axes.
     """

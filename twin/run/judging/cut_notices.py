@@ -133,7 +133,7 @@ _LIMITS_OF_FORCE = ("force_limit", "torque_limit", "thrust_limit")
 def tolerance_notices(
     tolerance: ToleranceTable, lines: int, machine: MachineConfig
 ) -> Iterator[Notice]:
-    """Ranges of lines behind the program's last line, and contour tolerances that nothing fails.
+    """Ranges of lines behind the program's last line, and tolerances of the motion that nothing fails.
 
     Args:
         lines: How many the program has.
@@ -146,23 +146,43 @@ def tolerance_notices(
                 f"program has {lines}"
             )
             yield Notice("tolerance-lines", lines, message)
-    axes = (machine.axis(name) for name in machine.axes.names)
-    stops_mm = math.hypot(*(axis.following_error_limit for axis in axes if axis.kind == "linear"))
-    allowed = {key: getattr(tolerance, key) for key in _FOLLOWED}
-    allowed |= {
-        f"blocks[{n}].contour_um": part.contour_um for n, part in enumerate(tolerance.blocks)
-    }
-    for key, limit_um in allowed.items():
-        if limit_um is not None and limit_um > 1e3 * stops_mm > 0.0:
+    widest = _widest_errors(machine)
+    allowed = {key: getattr(tolerance, key) for key in widest}
+    for number, part in enumerate(tolerance.blocks):
+        key = f"blocks[{number}].contour_um"
+        allowed[key], widest[key] = part.contour_um, widest["contour_um"]
+    for key, limit in allowed.items():
+        if limit is not None and limit > 1e3 * widest[key]:
+            unit = "deg" if key.endswith("mdeg") else "mm"
             message = (
-                f"tolerance.{key} allows {1e-3 * limit_um:,.15g} mm, and a following error of "
-                f"{stops_mm:.3g} mm in all axes together stops the machine: the tolerance fails nothing"
+                f"tolerance.{key} allows {1e-3 * limit:,.15g} {unit}, and the machine's following_error_limit stops "
+                f"it before it is {widest[key]:.3g} {unit} off: the tolerance fails nothing"
             )
             yield Notice("tolerance-too-wide", 0, message)
 
 
-_FOLLOWED = ("contour_um", "rapid_contour_um", "circular_deviation_um", "following_um")
-"""Tolerances of what following errors make."""
+def _widest_errors(machine: MachineConfig) -> dict[str, float]:
+    """How far what a tolerance limits can be off before a following error stops the machine [mm or deg].
+
+    A tool is off the path by what all axes together are off at most, a rotary one as far from its axis as the
+    travels let it be; on a circle, to either side. An axis without a limit is off by any amount.
+    """
+    axes = [machine.axis(name) for name in machine.axes.names]
+    linear, rotary = (
+        [axis.following_error_limit or math.inf for axis in axes if axis.kind == kind]
+        for kind in ("linear", "rotary")
+    )
+    travels = (axis.travel for axis in axes if axis.kind == "linear")
+    across = math.hypot(*(math.inf if not travel else travel[1] - travel[0] for travel in travels))
+    off = math.hypot(*linear) + sum(math.radians(limit) * across for limit in rotary)
+    return {
+        "contour_um": off,
+        "rapid_contour_um": off,
+        "circular_deviation_um": 2.0 * off,
+        "following_um": max(linear, default=math.inf),
+        "following_mdeg": max(rotary, default=math.inf),
+        "direction_mdeg": sum(rotary) or math.inf,
+    }
 
 
 def nominal_notices(job: JobFile) -> Iterator[Notice]:

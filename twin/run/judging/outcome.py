@@ -54,7 +54,7 @@ class Outcome:
     Attributes:
         cut: What was cut; None without a stock.
         gouge: The deepest cut into the nominal part, beyond what the job allows.
-        inspection: How far the part is from the nominal one; None without one.
+        inspection: How far the part is from the nominal one; None without one, and where an alarm stopped the run.
         loads: The greatest of what the tools bore.
         near_miss: The closest that the tool's side and the part's came, below the machine's limit.
         warnings: Those of the interpreter, of the program and of the cut.
@@ -118,7 +118,9 @@ def outcome_of(
     """
     job, reached, machining = preparation.job, followers.reached, followers.machining
     cut = machining.result() if reached.samples else None
-    inspection = machining.inspect() if reached.samples else None
+    stopped = next((alarm for alarm in alarms if alarm.stops), None)
+    # What never ran has left material: only a part that is finished is measured.
+    inspection = machining.inspect() if reached.samples and stopped is None else None
     loads, planned_s = followers.loads.result(), None if motion is None else motion.planned_s
     figures = _as_shown(followers.compared.result(), dry_run.summary)
     duration_s = min(planned_s or reached.last_motion_s, reached.time_s)
@@ -150,7 +152,7 @@ def outcome_of(
         inspection=inspection,
         loads=loads,
         alarms=alarms,
-        near_miss=None if motion is None else motion.near_miss,
+        near_miss=_near_miss(motion, reached.time_s),
         warnings=(*dry_run.warnings, *shown(notices, preparation.source, strict=False)),
         scope=scope_of(
             preparation,
@@ -159,7 +161,7 @@ def outcome_of(
             cut,
             forces=forces,
             unjudged=blind,
-            alarms=alarms,
+            stopped=stopped,
             inspection=inspection,
         ),
         trace=followers.traced.result(),
@@ -169,6 +171,12 @@ def outcome_of(
         final_commanded=reached.commanded,
         final_simulated=reached.simulated,
     )
+
+
+def _near_miss(motion: MachineMotion | None, until_s: float) -> NearMiss | None:
+    """The closest approach, unless the machine was stepped on to it behind what stopped the run."""
+    found = None if motion is None else motion.near_miss
+    return None if found is None or found.time_s > until_s else found
 
 
 def refuse_unjudged_loads(tolerance: ToleranceTable) -> None:

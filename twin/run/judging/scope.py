@@ -102,7 +102,7 @@ def scope_of(
     *,
     forces: bool,
     unjudged: Sequence[Unwatched],
-    alarms: Sequence[Alarm],
+    stopped: Alarm | None,
     inspection: Inspection | None,
 ) -> VerdictScope:
     """Put the scope of a run together.
@@ -111,6 +111,7 @@ def scope_of(
         cut: What was cut; None without a stock.
         forces: Whether the force of the cut was simulated.
         unjudged: What was asked for and judged nothing.
+        stopped: The alarm that ended the run before its end; None: it came to it.
         inspection: How far the part is from the nominal one; None without one.
     """
     job, file, watch = preparation.job, preparation.job.file, dry_run.watch
@@ -127,10 +128,7 @@ def scope_of(
         *_never_read(preparation.settings),
         *_expected(file),
         *unjudged,
-        *(
-            Unwatched(f"all behind line {each.line}", "the alarm ended the run")
-            for each in alarms[:1]
-        ),
+        *_never_run(stopped),
     )
     unused = (tool.number for tool in file.tools if tool.number not in watch.tools_used)
     listed = "tools" in file.model_fields_set
@@ -178,6 +176,15 @@ def _never_read(settings: ControlSettings) -> Iterator[Unwatched]:
     """Values that the job gives the program, and that it never asked for."""
     for table, names in settings.never_read.items():
         yield Unwatched(f"{table} {', '.join(names)}", "the program never asks for them")
+
+
+def _never_run(stopped: Alarm | None) -> Iterator[Unwatched]:
+    if stopped is None:
+        return
+    if stopped.time_s:
+        yield Unwatched(f"all behind line {stopped.line}", "the alarm ended the run")
+    else:
+        yield Unwatched("every line", "the alarm was raised before anything moved")
 
 
 def _expected(job: JobFile) -> Iterator[Unwatched]:

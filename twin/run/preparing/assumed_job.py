@@ -332,7 +332,7 @@ def _zero_line(
         begin = bar_ends(moves)[0]
         if top is not None:
             table = StockTable.model_validate(tomllib.loads("\n".join(stock))["stock"])
-            begin = float(top[0]) - table.extent[0] / 2.0
+            begin = min(begin, float(top[0]) - table.extent[0] / 2.0)
         zero["X"] = float(chain.table[0]) - begin
     if decides_height is not None:
         text = "\n".join(['program = "x"', *decides_height])

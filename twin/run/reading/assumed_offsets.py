@@ -17,12 +17,15 @@ USUAL = "G54"
 """Which lies at program zero in any case."""
 _G = r"(?<![A-Z0-9.])G[ \t]*"
 _NAMES = (
-    (rf"{_G}(5[4-9](?:\.[1-3])?|11[0-9]|12[0-9]|50[5-9]|5[1-9][0-9])(?![0-9.])(?![ \t]*P)", "G{}"),
+    (rf"{_G}(5[4-9](?:\.[1-3])?|50[5-9]|5[1-9][0-9])(?![0-9.])(?![ \t]*P)", "G{}"),
     (rf"{_G}(?:54(?:\.1)?|154)[ \t]*P[ \t]*0*([1-9][0-9]{{0,2}})(?![0-9.])", "G54.1 P{}"),
     (r"\bCYCL DEF 7\.1 *#[ \t]*([1-9][0-9]{0,3})(?![0-9.])", "DATUM{}"),
     (r"\bQ339[ \t]*=[ \t]*\+?([1-9][0-9]{0,3})(?![0-9.])", "PRESET{}"),
 )
 """How programs write work offsets, and how jobs call these."""
+_SHORT = re.compile(rf"{_G}(11[0-9]|12[0-9])(?![0-9.])", re.IGNORECASE)
+_BEFORE_FIRST = 109
+"""G110 to G129 are G154 P1 to P20 of a Haas."""
 _APART = 1.0
 """So far from each other offsets are put to see in which of them the program feeds [mm]."""
 
@@ -34,6 +37,7 @@ def named_offsets(blocks: str) -> tuple[str, ...]:
         for pattern, form in _NAMES
         for match in re.finditer(pattern, blocks, re.IGNORECASE)
     }
+    found |= {f"G54.1 P{int(match[1]) - _BEFORE_FIRST}" for match in _SHORT.finditer(blocks)}
     return tuple(sorted(found - {USUAL}))
 
 
@@ -64,9 +68,11 @@ def offsets_of_one_zero(
 
 
 def _ends_of_feeds(source: Source, dialect: Dialect, settings: ControlSettings) -> FloatArray:
+    """Ends of a program's feeds, shape (n, k); of one that feeds nowhere those of its rapids."""
     chunks = list(Interpretation(source, dialect, settings).chunks())
     moves = concatenate((chunk.moves for chunk in chunks), settings.axes)
-    return moves.end[moves.motion == Motion.FEED]
+    feeds = moves.motion == Motion.FEED
+    return moves.end[feeds | (not feeds.any())]
 
 
 def notes_of_offsets(names: tuple[str, ...]) -> Iterator[str]:

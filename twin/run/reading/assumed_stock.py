@@ -42,6 +42,10 @@ _STOCKS = (
     ),
     re.compile(rf"\bQUADER:\s*QX{_N}\s*QY{_N}\s*QZ{_N}"),
 )
+_SIMULATED = re.compile(
+    r"\bSTOCK/BLOCK\s*,\s*" + r"\s*,\s*".join([_N] * 3 + [rf"(-?{_N[1:-1]})"] * 3)
+)
+"""What Carbide Create and others write for CutViewer: the size, and where zero lies from the corner."""
 _ROUND = re.compile(
     rf"(?:STOCK|BLANK|BAR|MATERIAL|ROHTEIL)\b[^0-9\n]{{0,20}}(?:[ØΦ⌀]|\bDIA(?:METER)?\b\.?|\bD)\s*[=:]?\s*{_N}\s*(?:MM)?\s*(?:[X*]|L(?:ENGTH)?|H(?:EIGHT)?)[ =:]*{_N}"
 )
@@ -63,6 +67,9 @@ def assumed_stock(
         return _bar(cuts) if stated is None else _stated_bar(moves, stated)
     found = heights(cuts, low[2])
     if stated is not None:
+        if stated.zero is not None:
+            half = stated.size * np.array([0.5, 0.5, 1.0])
+            return _placed(stated, half - stated.zero, _OF_HEAD)
         center = _center_of(stated.size, low, high)
         top = 0.0 if found is not None and found[0] == 0.0 else float(stated.size[2])
         return _placed(stated, np.array([*center, top]), _OF_HEAD)
@@ -89,16 +96,22 @@ class _StatedStock(NamedTuple):
     Attributes:
         size: Along X, Y, Z, shape (3,) [mm].
         axis: Along which of these it is round; None: it is a box.
+        zero: Where program zero lies from its lower left corner, shape (3,) [mm]; None: that is not stated.
     """
 
     size: FloatArray
     axis: int | None = None
+    zero: FloatArray | None = None
 
 
 def _stated(comments: Sequence[tuple[int, str]], *, inches: bool) -> _StatedStock | None:
     """What comments in the program's head say of the blank."""
     unit = 25.4 if inches else 1.0
     head = "\n".join(text for line, text in comments if line <= HEAD_LINES).upper()
+    simulated = _SIMULATED.search(head)
+    if simulated is not None:
+        values = np.array([float(value) for value in simulated.groups()]) * unit
+        return _StatedStock(values[:3], None, values[3:]) if (values[:3] > 0.0).all() else None
     box = next((match for pattern in _STOCKS if (match := pattern.search(head))), None)
     cylinder = _ROUND.search(head) if box is None else None
     if box is not None:
@@ -118,9 +131,12 @@ def _stated_bar(moves: Moves, stated: _StatedStock) -> tuple[list[str], FloatArr
         size = size[[2, 0, 1]]
     elif size[0] == size[2] != size[1]:
         size = size[[1, 0, 2]]
-    _, last = bar_ends(moves)
+    clamped, last = bar_ends(moves)
     top = np.array([last - size[0] / 2.0, 0.0, size[2] / 2.0])
-    return _placed(_StatedStock(size, None if stated.axis is None else 0), top, _OF_HEAD)
+    before_table = last - float(size[0]) - clamped
+    held = f", held {before_table:g} mm before the table" if before_table > BELOW else ""
+    blank = _StatedStock(size, None if stated.axis is None else 0)
+    return _placed(blank, top, _OF_HEAD + held)
 
 
 def _placed(blank: _StatedStock, top: FloatArray, source: str) -> tuple[list[str], FloatArray, str]:

@@ -12,6 +12,10 @@ from twin.nc.dialects.recognition import HEAD_LINES
 _INCH = 25.4
 _NUMBER = r"[0-9]*[.,]?[0-9]+|[0-9]+[.,]"
 
+_COLUMNS = re.compile(
+    r"^\s*([0-9]{1,4})\s{2,}(\S.*(?:MILL|DRILL|TAP|REAMER|CUTTER|BAR|CHAMFER)\b.*)", re.IGNORECASE
+)
+"""A row of a list in columns: number, name, diameter."""
 _LISTED = (
     re.compile(r"^\s*T\s*([0-9]{1,6})\s*(?:\||-|:|=|,|\s)\s*(.*\S)", re.IGNORECASE),
     re.compile(
@@ -19,6 +23,7 @@ _LISTED = (
     ),
     re.compile(r"^\s*#\s*([0-9]{1,6})\s+(D\s*=.*\S)", re.IGNORECASE),
     re.compile(r"^\s*([0-9]{1,6})\s*=\s*(.*\b(?:MILL|DRILL|BIT|TAP)\b.*)", re.IGNORECASE),
+    _COLUMNS,
 )
 """Comments that begin with the tool's number."""
 
@@ -40,6 +45,7 @@ _DIAMETERS = (
     rf"\{{\s*({_NUMBER})\s*(MM|IN(?:CH)?)?",
     rf"({_NUMBER})\s*(MM|IN(?:CH)?\b|\")",
     rf"(?<![A-Z0-9./])({_NUMBER})()(?=\s*(?:\w+\s+){{0,2}}(?:END ?MILL|MILL|DRILL|BALL|BULL|TAP|CUTTER|REAMER|CHAMFER|FLAT|SPOT|DIA))",
+    rf"(?:MILL|DRILL|TAP|REAMER|CUTTER|BAR|CHAMFER)\s{{2,}}({_NUMBER})()(?![0-9./])",
     rf"^\s*({_NUMBER})()\s*$",
     rf"^(?!.*\bH\s*[0-9]).*\bD\s*({_NUMBER})()(?![0-9.])",
 )
@@ -58,6 +64,10 @@ _THREAD = re.compile(r"\bM([0-9]+(?:\.[0-9]+)?)(?:\s*[Xx][0-9.]+)?\s*(?:TAP|GEWI
 _CORNER = re.compile(
     rf"\b(?:CR|R|RAD(?:IUS)?|CORNER RAD(?:IUS)?)\s*[=:.-]?\s*({_NUMBER})", re.IGNORECASE
 )
+_SIMULATED = re.compile(rf"\s*TOOL/(MILL|DRILL|CHAMFER)\s*,\s*({_NUMBER})\s*(?:,\s*({_NUMBER}))?")
+"""What Carbide Create and others write for CutViewer: diameter, and of a mill its corner radius."""
+_SIMULATED_LINES = 10
+"""So far before its call such a comment may stand."""
 _WHOLE_LENGTH = re.compile(rf"\bTL\s*=\s*({_NUMBER})")
 """What hyperMILL writes from the spindle nose to the tip."""
 _RADIUS = re.compile(r"\bKR\s*[+]?([0-9]+\.[0-9]*)")
@@ -108,6 +118,9 @@ def numbered_tool(comment: str) -> tuple[int, str] | None:
 def tool_of_comment(text: str, *, inches: bool) -> ToolComment:
     """What a comment says about a tool; numbers without a unit are the program's."""
     upper = text.upper()
+    simulated = _SIMULATED.match(upper)
+    if simulated is not None:
+        return _simulated_tool(simulated, text, _INCH if inches else 1.0)
     kind = next((kind for words, kind in _KINDS if re.search(words, upper)), "")
     diameter = _diameter(upper, inches=inches)
     corner = _CORNER.search(upper)
@@ -129,6 +142,15 @@ def tool_of_comment(text: str, *, inches: bool) -> ToolComment:
     return ToolComment(
         kind, diameter, radius if kind == "bull" else None, text.strip(), wear, length=length
     )
+
+
+def _simulated_tool(found: re.Match[str], text: str, unit: float) -> ToolComment:
+    diameter, corner = _value(found[2]) * unit, 0.0
+    kind = {"DRILL": "drill", "CHAMFER": "chamfer"}.get(found[1], "flat")
+    if kind == "flat" and found[3]:
+        corner = _value(found[3]) * unit
+        kind = "ball" if 2.0 * corner >= diameter * 0.999 else "bull" if corner else "flat"
+    return ToolComment(kind, diameter, corner if kind == "bull" else None, text.strip())
 
 
 def named_tools(names: Mapping[int, str], *, inches: bool) -> dict[int, ToolComment]:
@@ -222,7 +244,11 @@ def near_comment(
         (abs(line - call), text)
         for line, text in comments
         for call in lines
-        if abs(line - call) <= _NEAR_LINES
+        if (
+            abs(line - call) <= _NEAR_LINES
+            or (0 < call - line <= _SIMULATED_LINES and _SIMULATED.match(text.upper()))
+        )
+        and not _lists_another(text, number)
     ]
     if not lines:
         near = [(line, text) for line, text in comments if line <= HEAD_LINES]
@@ -232,6 +258,12 @@ def near_comment(
         if (tool.diameter is not None and (tool.kind or on_line)) or (tool.kind and on_line):
             return tool
     return None
+
+
+def _lists_another(text: str, number: int) -> bool:
+    """Whether a comment is the row of another tool in a list."""
+    row = _COLUMNS.match(text)
+    return row is not None and int(row[1]) != number
 
 
 def while_in_spindle(

@@ -112,7 +112,7 @@ def screen_matrix(move: Segment) -> FloatArray:
 
 
 def screen_from(move: Segment, frame: FloatArray) -> Matrix:
-    """What a move whose X, Y and Z are told in another frame adds to what the screen shows (``Segment.screen``)."""
+    """What a move whose X, Y and Z are given in another frame adds to what the screen shows (``Segment.screen``)."""
     rows = frame if move.screen is None else np.array(move.screen) @ frame
     return (vector(rows[0]), vector(rows[1]), vector(rows[2]))
 
