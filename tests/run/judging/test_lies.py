@@ -104,6 +104,8 @@ TOLD: dict[str, tuple[str, dict[str, str], str, int]] = {
     "drill that turns backwards": (
         DRILL.replace("S2000 M3", "S2000 M4"), {}, "counter-clockwise", 3,
     ),
+    "left-hand cutter that turns clockwise": (CUT_, {"tool": 'hand = "left"'}, "counter-clockwise", 3),
+    "length reversed": (CUT_.replace("G43", "G44"), {}, "tool-offset", 2),
     "drill fed by a millimetre": (
         DRILL.replace("F100.", "F4000."), {}, "feed-per-tooth", 6,
     ),

@@ -43,7 +43,7 @@ def typed(session: SceneSession, text: str) -> bool:
     taken = session.submit({"do": "cycle_start"})
     for _ in range(2000):
         session.advance()
-        if room.slot.run is None and not room.machine.moving:
+        if (room.slot.run is None or room.slot.waiting) and not room.machine.moving:
             break
     return taken and room.alarm is None
 
@@ -73,3 +73,30 @@ def test_a_refused_block_changes_nothing(scene: str, block: str, wrong: str, bef
     assert in_force(session) == was, alarm.message
     assert session.submit({"do": "reset"})
     session.advance()
+
+
+def test_the_axes_stand_behind_the_block_of_a_stop_where_corners_are_blended() -> None:
+    session = SceneSession(read_scene(scene_path("fanuc_missing_point")))
+    before = session.room.machine.setpoint.position[0].copy()
+    session.submit({"do": "mode", "mode": "mdi"})
+    assert typed(session, "G91 G1 X1. F500.\nX2. M0\nX3. ,R.5\nY5.")
+    assert session.room.slot.waiting
+    assert session.room.machine.setpoint.position[0, 0] - before[0] == pytest.approx(3.0)
+    session.submit({"do": "cycle_start"})
+    session.advance(400)
+    travelled = session.room.machine.setpoint.position[0] - before
+    assert travelled[:2] == pytest.approx([6.0, 5.0])
+
+
+def test_a_corner_before_a_tool_change_is_refused_before_that() -> None:
+    session = SceneSession(read_scene(scene_path("fanuc_missing_point")))
+    session.submit({"do": "mode", "mode": "mdi"})
+    other = next(
+        row.number for row in session.snapshot().tools if row.number != session.snapshot().tool
+    )
+    was = session.snapshot().tool
+    assert not typed(session, f"G91 G1 X1. F500. T{other} M6 ,R.5\nY5.")
+    alarm = session.room.alarm
+    assert alarm is not None
+    assert "blend" in alarm.message
+    assert session.snapshot().tool == was

@@ -29,7 +29,7 @@ MESH_CELLS = 400_000
 def part_mesh(height_map: HeightMap, colours: Colours | None = None) -> "trimesh.Trimesh":
     """The cut stock as a closed mesh: its surface, walls down to the underside, the underside.
 
-    Steps between cells become faces one cell wide; where the cut went through, there is a hole.
+    Walls are upright where their place is known; where the cut went through, there is a hole.
     A map of more than ``MESH_CELLS`` cells is thinned first. Nothing left gives an empty mesh.
 
     Args:

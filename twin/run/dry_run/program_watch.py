@@ -129,20 +129,22 @@ class ProgramWatch:
         line = int(moves.line[feeds[0]])
         self.first_feed = self.first_feed or line
         turning = self._state.turning
-        if turning is not None and turning < 0.0 and self._tool.hand == "right":
-            self._note_sense(line)
         if turning:
+            if (turning < 0.0) == (self._tool.hand == "right") and self._started_at:
+                self._note_sense()
             moving = feeds[np.any(moves.start[feeds, :3] != moves.end[feeds, :3], axis=1)]
             per_tooth = moves.feed[moving] / (abs(turning) * self._tool.teeth)
             self._note_tooth_feed(moves.line[moving], per_tooth)
 
-    def _note_sense(self, line: int) -> None:
-        start = self._started_at or line
+    def _note_sense(self) -> None:
+        start, tool = self._started_at, self._tool
         if self._started_in_cycle:
             return
         message = (
-            f"M4 turns tool {self._tool.number}, which cuts clockwise, backwards: write M3, "
+            f"M4 turns tool {tool.number}, which cuts clockwise, backwards: write M3, "
             'or hand = "left" in its [[tools]] table'
+            if tool.hand == "right"
+            else f'M3 turns tool {tool.number} of hand = "left" backwards: write M4'
         )
         self._counter.setdefault(start, Notice("counter-clockwise", start, message))
 

@@ -209,6 +209,10 @@ class ProgramReader:
                     continue
                 self._note(block, mark)
                 self._look_for_stop(block)
+                if (
+                    self.ending is not None
+                ):  # the axes come to rest behind the block: no corner follows
+                    self._control.path.flush()
                 enough = columns.count >= MOVES_AT_ONCE
         except ProgramError as error:
             if stream is None:

@@ -75,8 +75,11 @@ def length_code(number: int, sign: float) -> Action:
 
     def action(control: Control) -> None:
         end_tool_center_of_length(control)
-        before = control.motion.programmed[2]
-        apply_length(control, sign, control.code_word(number))
+        before, word = control.motion.programmed[2], control.code_word(number)
+        apply_length(control, sign, word)
+        if sign < 0.0:
+            message = f"G{number} takes the length reversed: one that is above 0 in the control's table drives the tool into the part"
+            control.warn("tool-offset", message, word, "write G43")
         if control.modal.incremental and "Z" in control.words:
             control.motion.programmed[2] = before
 
