@@ -6,6 +6,10 @@ import pytest
 
 from tests.cutting.conftest import Motion
 from twin.cutting.cut import Cutter
+from twin.cutting.height_map_material import HeightMapMaterial
+from twin.cutting.heights.height_map import blank
+from twin.cutting.material import Points
+from twin.cutting.tools import default_cell, profile
 from twin.errors import ConfigError
 from twin.job.job_file import StockTable, ToolTable
 from twin.nc.canonical import FloatArray
@@ -314,6 +318,48 @@ def test_what_the_machine_is_off_its_path_is_no_chip(samples: Motion) -> None:
         moved = samples(motion[part], start=begin * 1e-3, commanded=wanted[part])
         cutter.add(moved, np.zeros(len(moved), np.bool_))
     assert cutter.result().air_share == pytest.approx(0.5, abs=0.01)
+
+
+@pytest.mark.parametrize("tilts", [False, True])
+@pytest.mark.parametrize("kind", ["flat", "ball"])
+def test_a_finishing_pass_of_a_hundredth_is_no_air(samples: Motion, kind: str, tilts: bool) -> None:
+    """By a machine that is 1 µm off its path; the same pass again is air."""
+    frame = PartFrame(rotary=None, center=(0.0, 0.0))
+    tool = ToolTable.model_validate({"number": 1, "kind": kind, "diameter": 6.0})
+    cutter = Cutter(plate(0.4), tool, frame, np.zeros(3), tilts=tilts)
+    x, air = np.linspace(-60.0, 60.0, 3000), []
+    for n, y in enumerate((20.0, 20.01, 20.01)):
+        wanted = path(x * (-1.0) ** n, y, -3.0)[:, :3]
+        way = wanted + np.array([0.0, 1e-3 * math.sin(n), 0.0])
+        before = cutter.result().air_share * n
+        cutter.add(samples(way, n + 1, n * 3.0, wanted), np.zeros(len(way), np.bool_))
+        air.append(cutter.result().air_share * (n + 1) - before)
+    rough, finishing, again = air
+    assert rough == pytest.approx(1.0 - 86.0 / 120.0, abs=0.03)
+    assert finishing == pytest.approx(1.0 - 80.0 / 120.0, abs=0.02)
+    assert again == pytest.approx(1.0, abs=1e-3)
+
+
+@pytest.mark.parametrize("diameter", [2.0, 8.0, 20.0])
+@pytest.mark.parametrize("turn", [0.0, 17.0, 45.0])
+@pytest.mark.parametrize(("share", "off"), [(1.0, 0.075), (0.25, 0.18)])
+def test_what_a_stretch_takes_off_is_known_however_short_it_is(
+    diameter: float, turn: float, share: float, off: float
+) -> None:
+    """In a slot, in steps of a share of the default cell."""
+    stock = StockTable(shape="box", size=(100.0, 100.0, 20.0))
+    tool = ToolTable(number=1, diameter=diameter, flute=20.0)
+    cell = default_cell((tool,), stock)
+    material = HeightMapMaterial(blank(stock, np.zeros(3), cell))
+    step, ahead = (
+        share * cell,
+        np.array([math.cos(math.radians(turn)), math.sin(math.radians(turn))]),
+    )
+    along = step * np.arange(40)[:, None] * ahead + [0.0, 0.13]
+    way = Points(np.column_stack([along, np.full(40, -3.0)]), np.tile([1.0, 0.0], (40, 1)))
+    found = material.take_off(way, tool, profile(tool), np.zeros(39), stood=False)
+    assert found.volume[1:] == pytest.approx(np.full(38, 3.0 * step * diameter), rel=off)
+    assert found.depth[1:] == pytest.approx(np.full(38, 3.0), abs=2e-3)
 
 
 @pytest.mark.parametrize("diameter", [6.0, 8.0, 12.0])

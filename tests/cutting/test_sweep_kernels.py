@@ -65,12 +65,13 @@ points = st.lists(st.tuples(coordinate, coordinate, st.floats(-5.0, 1.0)), min_s
 
 @hypothesis.settings(derandomize=True, max_examples=examples(40), deadline=None)
 @hypothesis.given(points, st.sampled_from(PROFILES))
+@hypothesis.example([(0.0, 0.0, 0.0), (0.0, 1.0, -1.0)], PROFILES[2])
 def test_sweep_agrees_with_many_small_steps(
     corners: list[tuple[float, float, float]], cutter: Profile
 ) -> None:
     path = np.array(corners)
     shape = (19, 23)
-    heights, (removed, depth, _), changed = swept(path, cutter, shape)
+    heights, (removed, depth, *_), changed = swept(path, cutter, shape)
     step = np.abs(np.diff(path, axis=0)).max() / 400
     stamped = swept_by_small_steps(path, cutter, shape)
     grown = cutter._replace(radius=cutter.radius + step, flat=cutter.flat + step)
@@ -102,7 +103,7 @@ def test_what_is_passed_over_was_cut_before(
     """A path swept whole, where places that lie under the tool are passed over, and line by line."""
     path = np.cumsum(np.array([(4.0, 4.0, -1.0), *ways]), axis=0)
     shape = (25, 27)
-    whole, (removed, depth, _), _ = swept(path, cutter, shape)
+    whole, (removed, depth, *_), _ = swept(path, cutter, shape)
     part, known = board(shape), board(shape)
     for i, line in enumerate(itertools.pairwise(path)):
         one, _ = sweep_lines(part, np.array(line), cutter)
@@ -115,7 +116,7 @@ def test_what_is_passed_over_was_cut_before(
 
 def test_level_sweep_is_the_stadium() -> None:
     path = np.array([[2.0, 3.0, -1.0], [6.0, 4.0, -1.0]])
-    heights, (removed, depth, _), _ = swept(path, PROFILES[0], (25, 25))
+    heights, (removed, depth, *_), _ = swept(path, PROFILES[0], (25, 25))
     y, x = CELL * np.indices(heights.shape)
     way = path[1, :2] - path[0, :2]
     t = np.clip(((x - 2.0) * way[0] + (y - 3.0) * way[1]) / (way @ way), 0.0, 1.0)

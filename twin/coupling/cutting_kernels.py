@@ -22,7 +22,7 @@ from twin.coupling.turning_tool import (
     time_of_tooth,
     turn_spindle,
 )
-from twin.cutting.kernels.covered_cells import Cells, Marks, Sum
+from twin.cutting.kernels.covered_cells import Cells, LineColumn, Marks
 from twin.cutting.kernels.sweep import sweep
 from twin.cutting.kernels.tooth_forces import tooth_forces
 from twin.cutting.kernels.walls import WalledMap, leave_walls, lose_trace, no_trace
@@ -74,7 +74,7 @@ class CutProgress(NamedTuple):
 def nothing_swept() -> CutProgress:
     """Of a tool that has been nowhere."""
     marks = Marks(np.zeros((0, 0)), np.zeros(1))
-    return CutProgress(np.zeros((2, 3)), no_trace(), np.zeros((1, len(Sum))), marks)
+    return CutProgress(np.zeros((2, 3)), no_trace(), np.zeros((1, len(LineColumn))), marks)
 
 
 @threaded_kernel

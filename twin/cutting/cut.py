@@ -1,30 +1,31 @@
 """Cutting: the recorded motion takes material off the stock, and what it did is noted."""
 
+import copy
 import dataclasses
 from collections.abc import Mapping
 from typing import Literal
 
 import numpy as np
 
-from twin.cutting.forces.direction import tool_force
+from twin.cutting.cut_totals import CutTotals
 from twin.cutting.forces.materials import kienzle
-from twin.cutting.forces.mean_force import cutting_load, cutting_width
 from twin.cutting.height_map_material import HeightMapMaterial
 from twin.cutting.heights.height_map import BoolArray, HeightMap, blank
 from twin.cutting.heights.sweeping import Rectangle
 from twin.cutting.kernels.sweep import Removal
-from twin.cutting.material import EDGE, Head, Material, Points
+from twin.cutting.material import EDGE, Contact, Head, Material, Points
+from twin.cutting.taking_off import TakingOff
 from twin.cutting.tool_motion import ToolMotion, by_edge, tool_motion
-from twin.cutting.tools import Profile, default_cell, profile
+from twin.cutting.tools import default_cell, profile
 from twin.cutting.tridexel import blanks
 from twin.cutting.tridexel.material import TriDexelMaterial
-from twin.cutting.watching.cut_log import HEIGHT_MAP, TRI_DEXEL, CutLog, CutResult
+from twin.cutting.watching.cut_log import HEIGHT_MAP, TRI_DEXEL, CutResult
 from twin.cutting.watching.cut_watch import CutWatch
 from twin.cutting.watching.events import CutEvent, EventLog, StockWatch, Stretches
 from twin.cutting.watching.stock_contact import above_edge
 from twin.errors import ConfigError
 from twin.job.job_file import StockTable, ToolTable
-from twin.nc.canonical import FloatArray
+from twin.nc.canonical import FloatArray, IntArray
 from twin.recording.reader import Samples
 from twin.toolpath.part_frame import PartFrame
 from twin.toolpath.tool_plan import ToolPlan
@@ -41,6 +42,7 @@ class Cutter:
             frame, shape (n, 3) [N]; 0 in the air and where it is not known.
         halted: What met material that must not, at which cutting ended, if it shall.
         watch: What the cut should not do, though nothing stops at it.
+        until: Up to when it has cut [s].
         start_depth: How deep the tool was in the material before anything moved [mm].
     """
 
@@ -86,39 +88,46 @@ class Cutter:
             self.material = HeightMapMaterial(blank(stock, corner, cell), keep_marks=keep_marks)
         self.force = np.zeros((0, 3))
         self._travelled = 0.0
-        self._material = kienzle(stock)
         self._along = along
         self._part_frame = part_frame
         self._last: tuple[Points, float] | None = None
+        self._waiting: tuple[ToolMotion, bool] | None = None
         self._changes = 0
         self._stand: ToolMotion | None = None
-        self._removed: dict[int, float] = {}
-        self._feed_path = 0.0
-        self._air_path = 0.0
-        self._force: float | None = None
-        self._power: float | None = None
         self._gouges = EventLog()
         self._rapids = StockWatch("rapid")
         self._standing = StockWatch("standing")
         self._halts, self._head = halts, head
         self._carriers = {each.beyond for each in above_edge(self.tool, head) if each.beyond}
         self.halted: CutEvent | None = None
-        self._cut_log = CutLog()
-        self.watch = CutWatch(self.material.cell)
+        self._totals = CutTotals(self.material.cell, kienzle(stock))
+        self.watch = CutWatch()
         self.start_depth = 0.0
+        self.until = -np.inf
 
-    def add(self, samples: Samples, rapid: BoolArray, standing: BoolArray | None = None) -> float:
+    def add(
+        self,
+        samples: Samples,
+        rapid: BoolArray,
+        standing: BoolArray | None = None,
+        *,
+        goes_on: bool = False,
+    ) -> float:
         """Cut along a chunk that follows the last one.
 
         Args:
             samples: n samples.
             rapid: Which of them belong to rapids, shape (n,).
             standing: During which of them the spindle is off, shape (n,); none of them by default.
+            goes_on: Whether samples that may be joined with the next ones wait for these, or for ``catch_up``: what is cut,
+                and all that is told of it, is then the same however samples come in chunks. ``force`` is not known.
 
         Returns:
-            Material that this chunk took off [mm³].
+            Material that was taken off [mm³].
         """
-        before = sum(self._removed.values())
+        before = sum(self._totals.removed.values())
+        if not goes_on:
+            self.catch_up()
         self.material.begin_chunk()
         self.force = np.zeros((len(samples), 3))
         if not len(samples):
@@ -139,15 +148,19 @@ class Cutter:
             )
             if self.halted is not None:
                 break
-            if tool.number != self.tool.number:
-                self._last = None
-            self.tool = tool
+            self._take(tool)
             for part, edge in by_edge(samples, run):
-                force = self._cut(
-                    motion[part].lowered(self.plan.length_difference(tool)), edge=edge
-                )
-                self.force[part.start : part.start + len(force)] = force
-        return sum(self._removed.values()) - before
+                here = motion[part].lowered(self.plan.length_difference(tool))
+                force = self._cut(here, edge=edge, wait=goes_on and part.stop == len(samples))
+                if not goes_on:
+                    self.force[part.start : part.start + len(force)] = force
+        return sum(self._totals.removed.values()) - before
+
+    def catch_up(self) -> None:
+        """Cut along the samples that wait."""
+        if self._waiting is not None:
+            motion, edge = self._waiting
+            self._cut(motion[:0], edge=edge)
 
     @property
     def tilts(self) -> bool:
@@ -184,6 +197,7 @@ class Cutter:
 
     def end_program(self) -> None:
         """Hold the tools that come behind the last move against the material where the axes are."""
+        self.catch_up()
         if self._stand is not None and self.halted is None:
             self._change_tools(self._stand, None)
 
@@ -193,22 +207,25 @@ class Cutter:
 
     def result(self) -> CutResult:
         """What was cut so far."""
-        bin_s, over_time = self._cut_log.over_time
+        self.catch_up()
+        self._totals.end(self.tool)
+        totals, log = self._totals, self._totals.log
+        bin_s, over_time = log.over_time
         return CutResult(
-            removed_mm3=sum(self._removed.values()),
-            removed_by_tool_mm3=dict(self._removed),
+            removed_mm3=sum(totals.removed.values()),
+            removed_by_tool_mm3=dict(totals.removed),
             stock=TRI_DEXEL if self.tilts else HEIGHT_MAP,
             cell_mm=self.material.cell,
-            air_share=self._air_path / self._feed_path if self._feed_path else 0.0,
+            air_share=totals.air_share,
             gouges=self._gouges.events(),
             rapid_into_stock=self._rapids.events(),
             spindle_off=self._standing.events(),
-            blocks=self._cut_log.blocks,
-            blocks_forgotten=self._cut_log.forgotten,
+            blocks=log.blocks,
+            blocks_forgotten=log.forgotten,
             bin_s=bin_s,
             removed_over_time=tuple(over_time.tolist()),
-            force_n=self._force,
-            power_w=self._power,
+            force_n=totals.force,
+            power_w=totals.power,
         )
 
     def _change_tools(self, stand: ToolMotion, move: int | None) -> None:
@@ -225,17 +242,27 @@ class Cutter:
                 return
             self._changes += 1
             if change.tool.number != self.tool.number:
-                self.tool, self._last = change.tool, None
+                self._take(change.tool)
                 self._note_arrival(
                     stand.lowered(self.plan.length_difference(change.tool)), change.line
                 )
+
+    def _take(self, tool: ToolTable) -> None:
+        """Have a tool in the spindle, or the same one at another speed."""
+        if tool == self.tool:
+            return
+        self.catch_up()
+        self._totals.end(self.tool)
+        if tool.number != self.tool.number:
+            self._last = None
+        self.tool = tool
 
     def _note_arrival(self, stand: ToolMotion, line: int) -> None:
         """Note that the tool which has just come into the spindle is in the material."""
         depth = self._depth_at(stand)
         if not depth:
             return
-        removal = Removal(*np.zeros((3, 1)))
+        removal = Removal(*np.zeros((4, 1)))
         tip = np.repeat(stand.ends.tip, 2, axis=0)
         stretches = Stretches(
             tip, stand.time, np.array([line]), stand.rapid, *removal, stand.off, stand.ends.axis
@@ -251,40 +278,76 @@ class Cutter:
             stand: Where its tip is, one sample.
         """
         here = stand.ends[np.zeros(2, np.int64)]
-        contact = self.material.contact(self.tool, profile(self.tool), self._head)
-        met = contact.measure(here, np.ones(1, np.bool_))
+        met = self._contact().measure(here, np.ones(1, np.bool_))
         return max((float(overlap.depth[0]) for overlap in met.values()), default=0.0)
 
-    def _cut(self, motion: ToolMotion, *, edge: bool) -> FloatArray:
+    def _cut(self, motion: ToolMotion, *, edge: bool, wait: bool = False) -> FloatArray:
         """Cut with one tool from the last point of the run before through all of this one's.
 
         Args:
             edge: Whether it has its edge: without one it takes nothing off, and what it must not
                 meet it still meets.
+            wait: Whether the last stretch waits for the samples that follow, unless it meets what it must not.
 
         Returns:
             Force on the tool during each sample that was cut along, shape (m, 3) [N].
         """
-        stood = self._last is not None
-        before, since = (motion.ends[:1], motion.time[0]) if self._last is None else self._last
+        if self._waiting is not None:
+            waiting, had_edge = self._waiting
+            if had_edge != edge:
+                self._waiting = None
+                self._cut(waiting, edge=had_edge)
+            else:
+                motion = waiting.followed_by(motion)
+        self._waiting = None
+        if self.halted is not None or not len(motion):
+            return np.zeros((0, 3))
+        before, _ = self._before(motion)
+        group, points = motion.group, before.followed_by(motion.ends)
+        chosen = self.material.straight(
+            points, np.concatenate([group[:1], group]), profile(self.tool)
+        )
+        if not wait:
+            return self._cut_along(motion, chosen, edge=edge)
+        decided = int(chosen[-2])
+        force = self._cut_along(motion[:decided], chosen[:-1], edge=edge)
+        self._waiting = motion[decided:], edge
+        if self._halts and self.halted is None and self._meets(motion[decided:]):
+            self.catch_up()
+        return force
+
+    def _before(self, motion: ToolMotion) -> tuple[Points, float]:
+        """Where the tool was before a motion, and when [s]."""
+        return self._last or (motion.ends[:1], float(motion.time[0]))
+
+    def _cut_along(self, motion: ToolMotion, chosen: IntArray, *, edge: bool) -> FloatArray:
+        """Cut along straight stretches.
+
+        Args:
+            chosen: Their ends, among the last point before the motion and the motion's.
+            edge: As for ``_cut``.
+
+        Returns:
+            As for ``_cut``.
+        """
+        if not len(motion):
+            return np.zeros((0, 3))
+        stood, (before, since) = self._last is not None, self._before(motion)
         self._last = motion.ends[-1:].copy(), float(motion.time[-1])
-        points = before.followed_by(motion.ends)
-        cutter = profile(self.tool)
-        group = motion.group
-        chosen = self.material.straight(points, np.concatenate([group[:1], group]), cutter)
-        points, sample = points[chosen], chosen[1:] - 1
+        self.until = float(motion.time[-1])
+        points, sample = before.followed_by(motion.ends)[chosen], chosen[1:] - 1
         rapid, off, lag = motion.rapid[sample], motion.standing[sample], motion.lag[sample]
         tip, ends, reach = points.tip, points.axis, self.tool.flute
         rapids = self._rapids.suspects(tip, rapid, lag, ends, reach)
         standing = self._standing.suspects(tip, ~rapid & off, lag, ends, reach)
         suspect = (rapids > 0) | (standing > 0)
-        found, met = self._take_off(points, cutter, suspect, edge=edge, stood=stood)
+        taking = TakingOff(self.material, self.tool, self._contact(), edge, self._halts)
+        mark = self._travelled + np.cumsum(_lengths(points.tip))
+        found, met = taking.along(points, suspect, mark, stood=stood)
         count = len(found.volume)
         points, sample = points[: count + 1], sample[:count]
         rapids, standing = rapids[:count], standing[:count]
         self._travelled += float(_lengths(points.tip).sum())
-        so_far = self._removed.get(self.tool.number, 0.0)
-        self._removed[self.tool.number] = so_far + float(found.volume.sum())
         time, line = motion.time[sample], motion.line[sample]
         axis = None if points.axis is None else points.axis[1:]
         stretches = Stretches(
@@ -299,64 +362,23 @@ class Cutter:
         self._standing.add(watched, standing, hits)
         if self._halts and (latest is not None or hits.any()):
             (self.halted,) = (*self._rapids.events(), *self._standing.events()) or (latest,)
-        force = self._note(stretches, np.diff(stretches.time, prepend=since))
+        self.watch.add(stretches, self.tool)
+        force = self._totals.add(stretches, np.diff(stretches.time, prepend=since), self.tool)
         return np.repeat(force, np.diff(sample, prepend=-1), axis=0)
 
-    def _take_off(
-        self, points: Points, cutter: Profile, suspect: BoolArray, *, edge: bool, stood: bool
-    ) -> tuple[Removal, dict[str, FloatArray]]:
-        """Take off what the tool meets, up to where something meets that must not, if that halts.
+    def _meets(self, motion: ToolMotion) -> bool:
+        """Whether anything that must not is in the material on a straight way from the last point."""
+        points = self._before(motion)[0].followed_by(motion.ends[-1:])
+        rapid, off = motion.rapid[-1:], motion.standing[-1:]
+        ways = points.tip, motion.lag[-1:], points.axis, self.tool.flute
+        suspect = copy.copy(self._rapids).suspects(ways[0], rapid, *ways[1:]) > 0
+        suspect |= copy.copy(self._standing).suspects(ways[0], ~rapid & off, *ways[1:]) > 0
+        met = self._contact().measure(points, suspect)
+        return any(overlap.depth.any() for overlap in met.values())
 
-        Args:
-            points: Ends of n stretches.
-            suspect: In which of them the edge must not cut, shape (n,).
-            edge: As for ``_cut``.
-            stood: Whether the tool has been at the first of them.
-
-        Returns:
-            What each stretch took off, and by name how deep something was in the material that
-            must not be, shape (n,) [mm]; fewer than n stretches where cutting halted.
-        """
-        contact = self.material.contact(self.tool, cutter, self._head)
-        doubtful = contact.measure(points, suspect, doubtful=True)
-        count, done = len(suspect), 0
-        removal = Removal(*np.zeros((3, count)))
-        met = {name: np.zeros(count) for name in doubtful}
-        mark = self._travelled + np.cumsum(_lengths(points.tip))
-        flagged = np.flatnonzero(np.any([o.depth for o in doubtful.values()], axis=0) & (count > 0))
-        # Against the material as the stretches before have left it.
-        for k in flagged.tolist():
-            if edge:
-                self._sweep(points, cutter, removal, mark, slice(done, k), stood=stood)
-            done = k
-            here = slice(k, k + 1)
-            for name, overlap in contact.measure(points[k : k + 2], suspect[here]).items():
-                met[name][here] = overlap.depth
-            if self._halts and any(depth[k] for depth in met.values()):
-                count = k + 1
-                break
-        if edge:
-            self._sweep(points, cutter, removal, mark, slice(done, count), stood=stood)
-        removal = Removal(*(column[:count] for column in removal))
-        return removal, {name: depth[:count] for name, depth in met.items()}
-
-    def _sweep(
-        self,
-        points: Points,
-        cutter: Profile,
-        removal: Removal,
-        mark: FloatArray,
-        part: slice,
-        *,
-        stood: bool,
-    ) -> None:
-        """Take off what some of the stretches meet."""
-        if part.start >= part.stop:
-            return
-        path, stood = points[part.start : part.stop + 1], stood or part.start > 0
-        found = self.material.take_off(path, self.tool, cutter, mark[part], stood=stood)
-        for column, swept in zip(removal, found, strict=True):
-            column[part] = swept
+    def _contact(self) -> Contact:
+        """What measures the tool in the spindle, and what is above it, against the material."""
+        return self.material.contact(self.tool, profile(self.tool), self._head)
 
     def _note_contacts(
         self, stretches: Stretches, met: Mapping[str, FloatArray]
@@ -370,27 +392,6 @@ class Cutter:
                 if i == len(depth) - 1:
                     latest = self._gouges.event(key)
         return latest
-
-    def _note(self, stretches: Stretches, duration: FloatArray) -> FloatArray:
-        """Enter air and removal, and the force where it can be computed.
-
-        Returns:
-            Mean force on the tool along each stretch, shape (n, 3) [N]; 0 where it is not known.
-        """
-        path = stretches.path
-        air = stretches.in_air(self.material.cell)
-        self.watch.add(stretches, self.tool)
-        self._feed_path += float(path[~stretches.rapid].sum())
-        self._air_path += float(path[~stretches.rapid & air].sum())
-        force, pushed = None, np.zeros((len(path), 3))
-        if self._material is not None and self.tool.speed is not None and len(duration):
-            load = cutting_load(stretches, duration, self.tool, self._material)
-            force = load.force
-            self._force = max(self._force or 0.0, float(force.max()))
-            self._power = max(self._power or 0.0, float(load.power.max()))
-            pushed = tool_force(stretches, force, self.tool, self._material)
-        self._cut_log.add(stretches, cutting_width(stretches, self.tool.diameter), force)
-        return pushed
 
 
 def _lengths(points: FloatArray) -> FloatArray:

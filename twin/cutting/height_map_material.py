@@ -74,7 +74,7 @@ class HeightMapMaterial:
         found = sweep_lines(self.map, points.tip, edge, marks, stood=stood, walls=True)
         self.changed = union(self.changed, found.changed)
         volume = found.removal.volume
-        self._owed = settle(volume, np.ones(len(volume), np.bool_), self._owed)
+        self._owed = settle(volume, np.ones(len(volume), np.bool_), 0.0, self._owed)
         return found.removal
 
     def write_stl(self, path: Path, zero: FloatArray) -> None:

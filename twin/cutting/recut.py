@@ -41,7 +41,8 @@ def recut(
         tilts=summary.tilts,
     )
     for samples in recording.chunks():
-        cutter.add(samples, summary.is_rapid(samples.setpoint.move))
+        cutter.add(samples, summary.is_rapid(samples.setpoint.move), goes_on=True)
+    cutter.catch_up()
     return cutter
 
 

@@ -39,6 +39,12 @@ class ToolMotion(Columns):
         """The motion of a tool that is longer by so much [mm]."""
         return dataclasses.replace(self, ends=self.ends.lowered(by))
 
+    def followed_by(self, other: "ToolMotion") -> "ToolMotion":
+        """Both, one after the other."""
+        names = [field.name for field in dataclasses.fields(self)][1:]
+        rest = [np.concatenate([getattr(self, name), getattr(other, name)]) for name in names]
+        return ToolMotion(self.ends.followed_by(other.ends), *rest)
+
     @property
     def group(self) -> IntArray:
         """A number that changes wherever a stretch must end."""

@@ -62,6 +62,7 @@ class Machining(Observer):
         self.stopped: list[Stop] = []
         self.ended_in_cut = False
         self._stops = list(stops)
+        self._due: list[tuple[Stop, float]] = []
         self._summary = summary
         self._zero = part_frame.program_zero(part_zero)
         self._cutter: Cutter | None = None
@@ -118,7 +119,9 @@ class Machining(Observer):
 
     def _cut(self, cutter: Cutter, samples: Samples) -> None:
         rapid = self._summary.is_rapid(samples.setpoint.move)
-        cutter.add(samples, rapid, self._summary.standing(samples.setpoint))
+        standing = self._summary.standing(samples.setpoint)
+        # The nominal part is looked at with the samples that cut.
+        cutter.add(samples, rapid, standing, goes_on=self._nominal is None)
 
     def _stop_at_gouge(
         self, uncut: Cutter, samples: Samples, gouge: NominalGouge, sample: int
@@ -150,11 +153,16 @@ class Machining(Observer):
         while self._stops and len(place) and self._stops[0].place <= place[-1]:
             stop = self._stops.pop(0)
             row = max(int(np.searchsorted(place, stop.place)), 1) - 1
-            self._note_stop(stop, float(setpoint.time[row]))
+            self._due.append((stop, float(setpoint.time[row])))
+        self._judge_stops()
 
-    def _note_stop(self, stop: Stop, time: float) -> None:
-        if self._cutter is not None and self._cutter.watch.engaged(time):
-            self.stopped.append(stop)
+    def _judge_stops(self, *, all_of_them: bool = False) -> None:
+        """See whether the tool was in the cut at the stops up to which it has cut, or at all that are due."""
+        cutter = self._cutter
+        while cutter is not None and self._due and (all_of_them or self._due[0][1] <= cutter.until):
+            stop, time = self._due.pop(0)
+            if cutter.watch.engaged(time):
+                self.stopped.append(stop)
 
     @property
     def cutter(self) -> Cutter | None:
@@ -169,8 +177,9 @@ class Machining(Observer):
     def end_program(self) -> None:
         """Look at the tools that come behind the last move, which may be in the part then."""
         if self._cutter is not None:
-            for stop in self._stops:
-                self._note_stop(stop, np.inf)
+            self._cutter.catch_up()
+            self._due += [(stop, np.inf) for stop in self._stops]
+            self._judge_stops(all_of_them=True)
             last = self.stopped[-1].place if self.stopped else -1.0
             at_end = last >= len(self._summary.rapid)
             self.ended_in_cut = not at_end and self._cutter.watch.engaged(np.inf)

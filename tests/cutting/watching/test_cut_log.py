@@ -21,9 +21,18 @@ def chunk(chance: random.Random, lines: list[int]) -> tuple[Stretches, FloatArra
     points = np.cumsum(np.vstack([np.zeros((1, 3)), values[:, :3]]), axis=0)
     stretches = Stretches(
         points, np.linspace(0.0, 0.01 * (count - 1), count), np.array(lines), np.zeros(count, np.bool_), removed,
-        values[:, 1], np.zeros(count), np.zeros((count, 3)),
+        values[:, 1], np.zeros(count), np.zeros(count), np.zeros((count, 3)),
     )  # fmt: skip
     return stretches, values[:, 2], values[:, 3]
+
+
+def note(
+    cut_log: CutLog, stretches: Stretches, width: FloatArray, force: FloatArray | None
+) -> None:
+    """Enter stretches, each with its width and force."""
+    cut_log.add(stretches)
+    cuts = stretches.removed > 0.0
+    cut_log.add_means(stretches.line[cuts], width[cuts], None if force is None else force[cuts])
 
 
 def enter(book: dict[int, BlockCut], stretches: Stretches, width: FloatArray, force: FloatArray):
@@ -42,7 +51,7 @@ def test_every_line_of_a_program_that_comes_round_again() -> None:
     cut_log, book = CutLog(remembered=50), {}
     for start in range(0, 300, 7):
         entries = chunk(chance, sorted((start + k // 3) % 90 for k in range(30)))
-        cut_log.add(*entries)
+        note(cut_log, *entries)
         enter(book, *entries)
     assert cut_log.forgotten == 0
     assert list(cut_log.blocks) == sorted(book)
@@ -55,7 +64,7 @@ def test_of_very_many_lines_the_foremost_are_told_of() -> None:
     cut_log, book = CutLog(remembered=2000), {}
     for start in range(0, 20_000, 40):
         entries = chunk(chance, [start + k // 2 for k in range(80)])
-        cut_log.add(*entries)
+        note(cut_log, *entries)
         enter(book, *entries)
     told = cut_log.blocks
     assert len(told) == LINES_REPORTED
@@ -74,7 +83,7 @@ def test_the_line_that_is_being_cut_is_not_let_go_of() -> None:
     for start in range(1, 500, 10):
         entries = chunk(chance, [*range(start, start + 10), 0, 0])
         entries[0].removed[-2:] = 1e-6 * start
-        cut_log.add(*entries)
+        note(cut_log, *entries)
         enter(book, *entries)
     cut_log._tidy()
     assert cut_log.forgotten > 0
@@ -85,7 +94,7 @@ def test_the_line_that_is_being_cut_is_not_let_go_of() -> None:
 def test_without_a_force_none_is_told() -> None:
     stretches, width, _ = chunk(random.Random(4), [5] * 9)  # noqa: S311 (the same)
     cut_log = CutLog()
-    cut_log.add(stretches, width, None)
+    note(cut_log, stretches, width, None)
     assert cut_log.blocks[5].force_n is None
 
 
@@ -105,8 +114,8 @@ def test_what_comes_in_many_small_chunks_is_put_together() -> None:
     chance = random.Random(3)  # noqa: S311 (the same)
     cut_log = CutLog()
     for _ in range(1000):
-        cut_log.add(*chunk(chance, [7, 8]))
+        note(cut_log, *chunk(chance, [7, 8]))
     size = len(pickle.dumps(cut_log))
     for _ in range(1000):
-        cut_log.add(*chunk(chance, [7, 8]))
+        note(cut_log, *chunk(chance, [7, 8]))
     assert len(pickle.dumps(cut_log)) < 1.5 * size

@@ -5,7 +5,6 @@ import math
 import numpy as np
 
 from twin.cutting.forces.materials import Kienzle
-from twin.cutting.forces.mean_force import cutting_width
 from twin.cutting.watching.events import Stretches, tool_frame
 from twin.job.job_file import ToolTable
 from twin.nc.canonical import FloatArray
@@ -19,7 +18,11 @@ _PLACES = (np.arange(24) + 0.5) / 24
 
 
 def tool_force(
-    stretches: Stretches, tangential: FloatArray, tool: ToolTable, material: Kienzle
+    stretches: Stretches,
+    width: FloatArray,
+    tangential: FloatArray,
+    tool: ToolTable,
+    material: Kienzle,
 ) -> FloatArray:
     """Mean force on the tool along each stretch, in the part's frame.
 
@@ -33,6 +36,7 @@ def tool_force(
 
     Args:
         stretches: n stretches.
+        width: Their widths of cut, shape (n,) [mm].
         tangential: Mean tangential force of all teeth, shape (n,) [N].
 
     Returns:
@@ -44,9 +48,9 @@ def tool_force(
     ahead = travel[:, :2] / np.maximum(level, 1e-30)[:, None]
     left = np.stack([-ahead[:, 1], ahead[:, 0]], axis=1)
     radius = 0.5 * tool.diameter
-    half = 0.5 * cutting_width(stretches, tool.diameter)
     first, last = (
-        np.arcsin(np.clip((stretches.aside + side * half) / radius, -1.0, 1.0)) for side in (-1, 1)
+        np.arcsin(np.clip((stretches.aside + side * 0.5 * width) / radius, -1.0, 1.0))
+        for side in (-1, 1)
     )
     angle = first[:, None] + (last - first)[:, None] * _PLACES
     weight = np.cos(angle) ** (1.0 - material.mc)

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from twin.cutting.heights.height_map import HeightMap
-from twin.cutting.kernels.covered_cells import Marks, Sum
+from twin.cutting.kernels.covered_cells import LineColumn, Marks
 from twin.cutting.kernels.sweep import Removal, removal_of_sums, sweep
 from twin.cutting.tools import Profile
 from twin.nc.canonical import FloatArray
@@ -43,10 +43,10 @@ def sweep_lines(
         walls: Whether the walls that it leaves are noted, and what they are off whole cells counts.
     """
     count = max(len(points) - 1, 0)
-    sums = np.zeros((count, len(Sum)))
+    sums = np.zeros((count, len(LineColumn)))
     marks = Marks(np.zeros((0, 0)), np.zeros(count)) if marks is None else marks
     changed = sweep(material.cells, points, edge, sums, marks, stood, walls)
-    removal = Removal(*np.zeros((3, count)))
+    removal = Removal(*np.zeros((4, count)))
     removal_of_sums(sums, points, material.grid, removal)
     return Swept(removal, changed)
 

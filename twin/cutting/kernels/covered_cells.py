@@ -57,7 +57,7 @@ class Marks(NamedTuple):
     mark: FloatArray
 
 
-class Sum(enum.IntEnum):
+class LineColumn(enum.IntEnum):
     """What a line took off: columns of ``Scratch.sums``."""
 
     LOST = 0

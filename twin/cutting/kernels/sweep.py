@@ -10,9 +10,9 @@ from twin.compilation.kernel import arithmetic_kernel, threaded_kernel
 from twin.cutting.kernels.covered_cells import (
     Cells,
     Grid,
+    LineColumn,
     Marks,
     Scratch,
-    Sum,
     columns_of,
     lay_disc,
     outline_of,
@@ -35,11 +35,13 @@ class Removal(NamedTuple):
         depth: Greatest depth of it, shape (n,) [mm].
         aside: How far left of the line it lay in the mean, shape (n,) [mm]; 0 for a line straight
             down.
+        thickness: How thick it was across the line at most, shape (n,) [mm]: a chip is no thicker.
     """
 
     volume: FloatArray
     depth: FloatArray
     aside: FloatArray
+    thickness: FloatArray
 
 
 @threaded_kernel
@@ -60,7 +62,7 @@ def sweep(
     Args:
         cells: The height map, whose heights are changed.
         points: Tool tip positions, shape (n, 3) [mm].
-        sums: What each line took off is added to it, shape (n - 1, 4); see ``Sum``. ``removal_of_sums`` reads it.
+        sums: What each line took off is added to it, shape (n - 1, 4); see ``LineColumn``. ``removal_of_sums`` reads it.
         marks: What each leaves where it cut.
         stood: Whether the tool has been at the first point, and has cut what it meets there.
         walls: Whether the walls that it leaves are noted, and what they are off whole cells counts.
@@ -88,25 +90,31 @@ def removal_of_sums(sums: FloatArray, points: FloatArray, grid: Grid, removal: R
         removal: Set to it.
     """
     for i in range(len(sums)):
-        lost = sums[i, Sum.LOST]
+        lost = sums[i, LineColumn.LOST]
         removal.volume[i] = lost * grid.cell * grid.cell
-        removal.depth[i] = sums[i, Sum.DEEPEST]
+        removal.depth[i] = sums[i, LineColumn.DEEPEST]
         removal.aside[i] = 0.0
         dx, dy = points[i + 1, 0] - points[i, 0], points[i + 1, 1] - points[i, 1]
-        length = math.hypot(dx, dy)
+        length, way = math.hypot(dx, dy), points[i + 1, 2] - points[i, 2]
+        # Beside a wall a line takes a cell's share more or less than its own.
+        area = (math.hypot(length, way) + grid.cell) * removal.depth[i]
+        removal.thickness[i] = (
+            min(removal.volume[i] / area, removal.depth[i]) if area > 0.0 else 0.0
+        )
         if lost > 0.0 and length > 0.0:
-            x = grid.origin[0] + sums[i, Sum.COLUMNS] / lost * grid.cell - points[i, 0]
-            y = grid.origin[1] + sums[i, Sum.ROWS] / lost * grid.cell - points[i, 1]
+            x = grid.origin[0] + sums[i, LineColumn.COLUMNS] / lost * grid.cell - points[i, 0]
+            y = grid.origin[1] + sums[i, LineColumn.ROWS] / lost * grid.cell - points[i, 1]
             removal.aside[i] = (y * dx - x * dy) / length
 
 
 @arithmetic_kernel
-def settle(volume: FloatArray, cuts: BoolArray, owed: float) -> float:
-    """Let stretches that only cut the grid, or take less than nothing, leave what they took to those that follow.
+def settle(volume: FloatArray, cuts: BoolArray, least: float, owed: float) -> float:
+    """Let stretches that only cut the grid leave what they took to those that follow.
 
     Args:
         volume: Of n stretches that follow each other [mm³]; changed.
         cuts: Which of them cut, shape (n,).
+        least: Nor does one cut that takes no more than this [mm³].
         owed: What stretches before them have left [mm³].
 
     Returns:
@@ -114,7 +122,7 @@ def settle(volume: FloatArray, cuts: BoolArray, owed: float) -> float:
     """
     for i in range(len(volume)):
         owed += volume[i]
-        volume[i] = owed if cuts[i] and owed > 0.0 else 0.0
+        volume[i] = owed if cuts[i] and owed > least else 0.0
         owed -= volume[i]
     return owed
 
@@ -265,9 +273,9 @@ def _add(
 ) -> None:
     """Add what a run of cells lost: in all, that times the columns' numbers, and at most [mm]."""
     sums, changed = scratch.sums[line], scratch.changed
-    sums[Sum.LOST] += cut[0]
-    sums[Sum.COLUMNS] += cut[1]
-    sums[Sum.ROWS] += cut[0] * row
-    sums[Sum.DEEPEST] = max(sums[Sum.DEEPEST], cut[2])
+    sums[LineColumn.LOST] += cut[0]
+    sums[LineColumn.COLUMNS] += cut[1]
+    sums[LineColumn.ROWS] += cut[0] * row
+    sums[LineColumn.DEEPEST] = max(sums[LineColumn.DEEPEST], cut[2])
     changed[0], changed[1] = min(changed[0], row), max(changed[1], row + 1)
     changed[2], changed[3] = min(changed[2], run[0]), max(changed[3], run[1])

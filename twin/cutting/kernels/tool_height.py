@@ -174,7 +174,7 @@ def _rise(
     distance = math.sqrt(offset + squared * along * along)
     beyond = distance - flat
     if beyond <= 0.0:
-        return dz * corner * distance
+        return dz * corner * flat
     beyond = min(beyond, corner)
     side = math.sqrt(max(corner * corner - beyond * beyond, 0.0))
     return dz * distance * side + squared * along * beyond

@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from twin.compilation.compilable import inlined
 from twin.compilation.kernel import kernel
-from twin.cutting.kernels.covered_cells import Cells, Sum, chord
+from twin.cutting.kernels.covered_cells import Cells, LineColumn, chord
 from twin.cutting.kernels.tool_height import Profile, profile_height
 from twin.nc.canonical import FloatArray
 
@@ -124,7 +124,7 @@ def note_walls(
         begin: Tool tip at its beginning, shape (3,) [mm].
         end: At its end.
         done: Whether what it is beside at the beginning has been noted.
-        sums: What walls are off whole cells is added to it, shape (4,); see ``Sum``.
+        sums: What walls are off whole cells is added to it, shape (4,); see ``LineColumn``.
     """
     (heights, behind, grid), cell, (radius, flat, corner, slope) = cells, cells.grid.cell, profile
     outer = radius + FARTHEST * cell
@@ -203,11 +203,11 @@ def _pass_by(cells, row, column, passing, sums):
     if passing.lowest < foot - passing.side - EQUAL_MM:
         # It goes down, or has come up.
         _note_below(cells.behind[row, column], KNOWN + max(off, 0.0))
-    sums[Sum.LOST] += gone
-    sums[Sum.COLUMNS] += gone * column
-    sums[Sum.ROWS] += gone * row
+    sums[LineColumn.LOST] += gone
+    sums[LineColumn.COLUMNS] += gone * column
+    sums[LineColumn.ROWS] += gone * row
     if gone > 0.0:
-        sums[Sum.DEEPEST] = max(sums[Sum.DEEPEST], depth)
+        sums[LineColumn.DEEPEST] = max(sums[LineColumn.DEEPEST], depth)
     return True
 
 

@@ -65,6 +65,7 @@ class Engagement(NamedTuple):
         depth: How far along the tool's axis it reaches, shape (n,) [mm].
         middle: Where it lay in the mean, shape (n, 3) [mm].
         longest: Longest piece of any line, shape (n,) [mm].
+        thickness: The shortest of the longest pieces along X, Y and Z, shape (n,) [mm].
     """
 
     volume: FloatArray
@@ -72,6 +73,7 @@ class Engagement(NamedTuple):
     depth: FloatArray
     middle: FloatArray
     longest: FloatArray
+    thickness: FloatArray
 
 
 def volume(stock: TriDexel) -> float:
@@ -103,6 +105,7 @@ def cut(stock: TriDexel, poses: Poses, edge: Sequence[Solid], tool: int) -> Enga
         np.where(touched, sums[:, StepColumn.HIGHEST] - sums[:, StepColumn.LOWEST], 0.0),
         sums[:, StepColumn.MOMENT : StepColumn.MOMENT + 3] / some[:, None],
         sums[:, StepColumn.LONGEST : StepColumn.LONGEST + 3].max(axis=1, initial=0.0),
+        _shortest(sums),
     )
 
 
@@ -113,9 +116,12 @@ def met(stock: TriDexel, poses: Poses, solid: Solid) -> FloatArray:
     is any, and the shortest of these counts: on a face that looks along an axis it is the depth below the
     face, on one that looks between all three at most 1.73 times as much.
     """
-    longest = _swept(stock, poses, (solid,), MEASURE)[
-        :, StepColumn.LONGEST : StepColumn.LONGEST + 3
-    ]
+    return _shortest(_swept(stock, poses, (solid,), MEASURE))
+
+
+def _shortest(sums: FloatArray) -> FloatArray:
+    """The shortest of the longest pieces along X, Y and Z, of those of which there are any, shape (n,) [mm]."""
+    longest = sums[:, StepColumn.LONGEST : StepColumn.LONGEST + 3]
     least = np.where(longest > 0.0, longest, np.inf).min(axis=1, initial=np.inf)
     return np.where(np.isfinite(least), least, 0.0)
 

@@ -1,5 +1,6 @@
 """A tri-dexel stock as the material of a cut."""
 
+import math
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -100,9 +101,10 @@ class TriDexelMaterial:
         aside = (middle * left).sum(axis=1) / np.where(length > 0.0, length, 1.0)
         # A hair's breadth about a node counts for a part of its cell.
         cuts, volume = found.longest > AIR_MM, found.volume.copy()
-        self._owed = settle(volume, cuts, self._owed)
+        self._owed = settle(volume, cuts, -math.inf, self._owed)
         seen = cuts & (length > 0.0)
-        return Removal(volume, np.where(cuts, found.depth, 0.0), np.where(seen, aside, 0.0))
+        depth, thickness = np.where(cuts, found.depth, 0.0), np.where(cuts, found.thickness, 0.0)
+        return Removal(volume, depth, np.where(seen, aside, 0.0), thickness)
 
     def write_stl(self, path: Path, zero: ArrayLike) -> None:
         """Write the part as binary STL."""

@@ -34,8 +34,9 @@ class BlockCut:
 
     Attributes:
         path_mm: Path of the tool in the part, cutting.
-        width_mm: Greatest width of cut of a stretch, each stretch's mean.
-        force_n: Greatest mean cutting force; None where it is not computed.
+        width_mm: Greatest width of cut, a mean as the force is.
+        force_n: Greatest mean cutting force over a turn of the spindle, and a cell of the path at least; None where it is
+            not computed.
     """
 
     removed_mm3: float = 0.0
@@ -100,17 +101,16 @@ class _Lines(Columns):
 
     def each_once(self) -> "_Lines":
         """Rows of the same line put together, by line."""
-        order = np.argsort(self.line, kind="stable")
-        rows = self[order]
-        first = np.flatnonzero(np.diff(rows.line, prepend=-1))
-        return _Lines(
-            rows.line[first],
-            np.add.reduceat(rows.removed, first),
-            np.add.reduceat(rows.path, first),
-            np.maximum.reduceat(rows.depth, first),
-            np.maximum.reduceat(rows.width, first),
-            np.fmax.reduceat(rows.force, first),
-        )
+        lines, row = np.unique(self.line, return_inverse=True)
+        removed, path, depth, width = np.zeros((4, len(lines)))
+        force = np.full(len(lines), math.nan)
+        # One after the other: what was put together before is the first of its line.
+        np.add.at(removed, row, self.removed)
+        np.add.at(path, row, self.path)
+        np.maximum.at(depth, row, self.depth)
+        np.maximum.at(width, row, self.width)
+        np.fmax.at(force, row, self.force)
+        return _Lines(lines, removed, path, depth, width, force)
 
     def foremost(self, count: int) -> "_Lines":
         """As many rows as that: those that took off the most or met the greatest force, by line."""
@@ -151,28 +151,35 @@ class CutLog:
         self._bins = np.zeros(TIME_BINS)
         self._end = 0
 
-    def add(self, stretches: Stretches, width: FloatArray, force: FloatArray | None) -> None:
-        """Enter stretches that follow the last ones.
-
-        Args:
-            stretches: n stretches.
-            width: Their widths of cut, shape (n,) [mm].
-            force: Their cutting forces, shape (n,) [N]; None where it is not computed.
-        """
+    def add(self, stretches: Stretches) -> None:
+        """Enter what stretches took off that follow the last ones."""
         cutting = stretches.removed > 0
         if not cutting.any():
             return
-        self._enter_time(stretches.time[cutting], stretches.removed[cutting])
-        known = np.full(len(width), math.nan) if force is None else force
-        entries = _Lines(
-            stretches.line, stretches.removed, stretches.path, stretches.depth, width, known
-        )
-        entries = entries[cutting]
-        self._latest = int(entries.line[-1])
-        self._fresh.append(entries.each_once())
-        self._fresh_lines += len(self._fresh[-1])
         if self._fresh_lines > self._remembered or len(self._fresh) > CHUNKS_FRESH:
             self._tidy()
+        removed, nothing = stretches.removed[cutting], np.zeros(int(cutting.sum()))
+        self._enter_time(stretches.time[cutting], removed)
+        line, path = stretches.line[cutting], stretches.path[cutting]
+        depth, unknown = stretches.depth[cutting], np.full(len(removed), math.nan)
+        self._latest = int(line[-1])
+        self._enter(_Lines(line, removed, path, depth, nothing, unknown))
+
+    def add_means(self, line: IntArray, width: FloatArray, force: FloatArray | None) -> None:
+        """Enter means over pieces of the path that took something off.
+
+        Args:
+            line: Source lines, shape (n,).
+            width: Widths of cut, shape (n,) [mm].
+            force: Cutting forces, shape (n,) [N]; None where it is not computed.
+        """
+        known = np.full(len(width), math.nan) if force is None else force
+        nothing = np.zeros(len(width))
+        self._enter(_Lines(line, nothing, nothing, nothing, width, known))
+
+    def _enter(self, rows: _Lines) -> None:
+        self._fresh.append(rows)
+        self._fresh_lines += len(rows)
 
     def _tidy(self) -> None:
         """Put what is fresh to what is kept, and let go of the least where that is too much."""

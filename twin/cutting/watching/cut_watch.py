@@ -38,14 +38,9 @@ class CutWatch:
         slips: What was found, once for each kind, line and tool.
     """
 
-    def __init__(self, cell: float) -> None:
-        """Begin in the air.
-
-        Args:
-            cell: Side of the material's cells [mm].
-        """
+    def __init__(self) -> None:
+        """Begin in the air."""
         self.slips: dict[CutSlip, None] = {}
-        self._cell = cell
         self._time = np.zeros(0)
         self._path = np.zeros(0)
         self._cuts = np.zeros(0, np.bool_)
@@ -54,7 +49,7 @@ class CutWatch:
 
     def add(self, stretches: Stretches, tool: ToolTable) -> None:
         """Look at the stretches that one tool has just made."""
-        cuts = ~stretches.in_air(self._cell)
+        cuts = ~stretches.in_air
         self._remember(stretches.time, stretches.path, cuts)
         # What the lag lets a rapid take off belongs to the feed before it.
         cuts = cuts & ~stretches.rapid

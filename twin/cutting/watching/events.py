@@ -6,7 +6,6 @@ from collections.abc import Hashable
 import numpy as np
 
 from twin.cutting.heights.height_map import BoolArray
-from twin.cutting.material import AIR_MM
 from twin.nc.canonical import FloatArray, IntArray
 
 TAIL_MM = 0.2
@@ -54,6 +53,7 @@ class Stretches:
         removed: Material taken off, shape (n,) [mm³].
         depth: Greatest depth of it, shape (n,) [mm].
         aside: How far left of the path it lay in the mean, shape (n,) [mm].
+        thickness: How thick it was across the path at most, shape (n,) [mm].
         off: From the tip to its setpoint at the end of each, shape (n, 3) [mm].
         axis: Direction from the tool's tip to the spindle at the end of each, shape (n, 3); None: +Z.
     """
@@ -65,22 +65,16 @@ class Stretches:
     removed: FloatArray
     depth: FloatArray
     aside: FloatArray
+    thickness: FloatArray
     off: FloatArray
     axis: FloatArray | None = None
 
-    def in_air(self, cell: float) -> BoolArray:
-        """Which take off no material worth the name, shape (n,).
-
-        Args:
-            cell: Side of the material's cells [mm].
-        """
-        path = self.path
-        way = np.diff(self.points, axis=0) / np.maximum(path, 1e-12)[:, None]
+    @property
+    def in_air(self) -> BoolArray:
+        """Which take off no material worth the name, shape (n,)."""
+        way = np.diff(self.points, axis=0) / np.maximum(self.path, 1e-12)[:, None]
         beside = np.linalg.norm(np.cross(self.off, way), axis=1)
-        # Beside a wall a stretch takes a cell's share more or less than its own.
-        most = np.maximum((path + cell) * self.depth, 1e-12)
-        thin = np.minimum(self.removed / most, self.depth)
-        return (thin < THINNEST_MM + 2.0 * beside) | (self.removed < AIR_MM * cell**2)
+        return self.thickness < THINNEST_MM + 2.0 * beside
 
     @property
     def travel(self) -> FloatArray:
