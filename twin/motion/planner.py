@@ -10,7 +10,7 @@ from twin.motion.corner_candidates import PiecesOfChunks
 from twin.motion.limits import MotionLimits
 from twin.motion.phases_of_pieces import phases_of_pieces
 from twin.motion.profile.phases import Phases
-from twin.motion.setpoints.sampling import at_end, sample, standing
+from twin.motion.setpoints.sampling import FEWEST_SAMPLES, MOST_SAMPLES, at_end, sample, standing
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.motion.steps import PipelineStage
 from twin.nc.canonical import Chunk, FloatArray
@@ -48,7 +48,7 @@ def plan(
         start: Where the axes are before the program, machine coordinates, shape (k,) [mm or deg].
 
     Yields:
-        Setpoints in machine coordinates, at most ``SAMPLES`` at a time.
+        Setpoints in machine coordinates, at most ``MOST_SAMPLES`` at a time.
 
     Raises:
         ValueError: The first move does not begin at ``start``, or a move not where the one before
@@ -60,7 +60,9 @@ def plan(
     watched = WatchedEnd(chunks, start, part_zero)
     for phases in plan_phases(watched, limits, start=start - part_zero):
         end_time = phases.end_time
-        for samples in sample(phases, tick, period_s, part_zero):
+        # A chunk is at most as long as all before it, so that the first is simulated early.
+        most = min(max(FEWEST_SAMPLES, tick), MOST_SAMPLES)
+        for samples in sample(phases, tick, period_s, part_zero, most):
             tick += len(samples)
             yield samples
         last = at_end(phases)

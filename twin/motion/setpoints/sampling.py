@@ -50,12 +50,14 @@ def settle(
     )
 
 
-SAMPLES = 4096
-"""Setpoints per chunk at most: the first is simulated before any sample is available, and larger ones run no faster."""
+FEWEST_SAMPLES = 4096
+"""Setpoints of a program's first chunk at most: it is simulated before any sample is available."""
+MOST_SAMPLES = 16384
+"""Setpoints of any chunk at most: larger ones run no faster."""
 
 
 def sample(
-    phases: Phases, tick: int, period_s: float, part_zero: FloatArray, most: int = SAMPLES
+    phases: Phases, tick: int, period_s: float, part_zero: FloatArray, most: int
 ) -> Iterator[Setpoints]:
     """The setpoints from a tick to the end of the phases, machine coordinates.
 
