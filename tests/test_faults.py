@@ -167,3 +167,13 @@ def test_what_killed_runs_left_is_removed(tmp_path: Path) -> None:
     assert [path.name for path in tmp_path.iterdir()] == ["notes.txt"]
     with run_folder(tmp_path, []), pytest.raises(UsageError, match="another run"):
         hold(tmp_path)
+
+
+def test_a_window_library_that_mujoco_does_not_know_is_refused() -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", "twin", "--version"],
+        env={**os.environ, "MUJOCO_GL": "wrong"}, capture_output=True, text=True, check=False, timeout=60,
+    )  # fmt: skip
+    assert done.returncode == 2
+    assert "MUJOCO_GL=wrong" in done.stderr
+    assert "egl" in done.stderr

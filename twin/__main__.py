@@ -19,6 +19,10 @@ to an end [bytes]."""
 COLLECT_AFTER = 500_000
 """New objects between two searches for garbage: what libraries make while they load, some 300,000, all stays."""
 
+KNOWN_TO_MUJOCO = frozenset(
+    "egl osmesa glfw glx cgl wgl disable disabled off false 0 enable enabled on true 1".split()
+)
+"""What MuJoCo takes in ``MUJOCO_GL`` (``mujoco/rendering/classic/gl_context.py``); with anything else it cannot be imported."""
 
 _BOXING_NAME, _BOXING_MODULE = "_numba_unpickle", "namedtuple_"
 """What Numba calls in Python while compiled code hands its result over: a function, and constructors
@@ -88,6 +92,17 @@ def is_loading(frame: types.FrameType | None) -> bool:
     return False
 
 
+def _choose_window_library() -> None:
+    """MuJoCo needs none, for pictures are drawn in contexts of this package's own; what it refuses is said here."""
+    wanted = os.environ.setdefault("MUJOCO_GL", "disable").lower().strip()
+    if wanted and wanted not in KNOWN_TO_MUJOCO:
+        print(
+            f"the environment says MUJOCO_GL={wanted}, which MuJoCo does not know: unset it, or choose egl, osmesa or glfw",
+            file=sys.stderr,
+        )
+        raise SystemExit(2)
+
+
 def _run(stopped: list[int]) -> None:
     """Run the command line; the signals that came are put into the list."""
 
@@ -112,8 +127,7 @@ def _run(stopped: list[int]) -> None:
             file=sys.stderr,
         )
         raise SystemExit(2)
-    # Pictures are drawn in contexts of this package's own: MuJoCo needs to load no window library.
-    os.environ.setdefault("MUJOCO_GL", "disable")
+    _choose_window_library()
     # Nor does pydantic need to search all that is installed for plug-ins, of which the tables of files have no use.
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     try:

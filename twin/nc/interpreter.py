@@ -46,7 +46,7 @@ class Interpretation:
         self._executor = Executor(dialect, settings, source)
         self._control = self._executor.control
         self.coverage = Coverage(source, dialect)
-        self.lengths = LengthCalls()
+        self.lengths = LengthCalls(by_code=dialect.rules.length_by_code)
         self.compensated: set[int] = set()
         self.drilled: set[int] = set()
 

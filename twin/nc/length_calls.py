@@ -29,9 +29,11 @@ class LengthCalls:
             spindle any more.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, *, by_code: bool) -> None:
+        """Nothing was run yet; ``by_code``: as ``Rules.length_by_code``."""
         self.calls: dict[int, LengthCall] = {}
         self.fed_without: set[int] = set()
+        self._by_code = by_code
         self._called_for: int | None = None
         self._ended = False
         self._begin: int | None = None
@@ -45,13 +47,12 @@ class LengthCalls:
         """
         number, tools.length_call = tools.length_call, None
         if number == LENGTH_ENDED:
-            self._ended = True
+            # Where a code alone calls a length, one that ends it before the first call is that of a start line.
+            self._ended = not self._by_code or self._called_for is not None
         elif number is not None:
             self.calls[line] = LengthCall(number, tools.spindle)
             self._called_for, self._ended = tools.spindle, False
-        without = self._called_for is not None and (
-            self._ended or tools.spindle != self._called_for
-        )
+        without = self._ended or self._called_for not in {None, tools.spindle}
         if without and self._begin is None:
             self._begin = move
         elif not without and self._begin is not None:

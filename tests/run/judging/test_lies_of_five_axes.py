@@ -123,6 +123,10 @@ TOLD: dict[str, tuple[str, dict[str, str], str, int]] = {
     "D0 before the cut": (
         LED.replace("TRAORI\nG0 B-15\n", "D0\n").replace("G0 B0\nTRAFOOF\n", ""), HEAD, "length-lost", 8,
     ),
+    "D0 in the block of the change": (
+        LED.replace("TRAORI\nG0 B-15\n", "").replace("G0 B0\nTRAFOOF\n", "").replace("T1 M6", "T1 D0 M6").replace(" D1", ""),
+        HEAD, "length-lost", 7,
+    ),
     "motion behind the end": (LED + "G1 X5 F100\n", HEAD, "ends-before-motion", 14),
     "M3 without a speed": (LED.replace("S6000 ", ""), HEAD, "spindle-off", 9),
     "beyond the travel of B": (SWIVEL + "G0 B115\nM30\n", HEAD, "soft-limit", 5),

@@ -83,11 +83,11 @@ def _slip_notices(slip: CutSlip, tool: ToolTable, drilled: frozenset[int]) -> It
 
 
 def lost_length_notices(fed_without_length: frozenset[int], cut: CutResult) -> Iterator[Notice]:
-    """A length that was called before, and does not count for the tool that cuts."""
+    """Cuts of a tool whose length does not count."""
     for line in sorted(fed_without_length):
         if line in cut.blocks and cut.blocks[line].removed_mm3 >= LEAST_CUT_MM3:
             message = (
-                "the tool cuts here, and the length that was called before was ended, or is that of "
+                "the tool cuts here without its length: that was ended, or the one that counts is of "
                 "a tool which is not in the spindle any more"
             )
             yield Notice("length-lost", line, message)

@@ -68,7 +68,7 @@ DECISIONS = (
     ),
     Decision(
         "When does a tool come into the spindle?",
-        "T selects, M6 changes and puts D1 into force; D0 takes length and radius away.",
+        "T selects, M6 changes and puts D1 into force, or the D of its block; D0 takes length and radius away.",
         "Mills are set up so; the machine data can make T change.",
         example="tool_and_edge",
     ),

@@ -92,10 +92,11 @@ def next_tool(control: Control, word: Word) -> None:
 
 
 def change_tool(control: Control) -> None:
-    """M6: the tool goes into the spindle with its offset D1."""
+    """M6: the tool goes into the spindle with its offset D1, or as the D of the same block says."""
     go_to_change_height(control)
     control.tools.change()
-    _apply_offset(control, on=True)
+    says_edge = any(each.address == "D" for each in control.block.words)
+    _apply_offset(control, on=memory_of(control).tool_on or not says_edge)
 
 
 def tool_offset(control: Control, word: Word) -> None:
