@@ -20,7 +20,24 @@ COLLECT_AFTER = 500_000
 """New objects between two searches for garbage: what libraries make while they load, some 300,000, all stays."""
 
 KNOWN_TO_MUJOCO = frozenset(
-    "egl osmesa glfw glx cgl wgl disable disabled off false 0 enable enabled on true 1".split()
+    [
+        "egl",
+        "osmesa",
+        "glfw",
+        "glx",
+        "cgl",
+        "wgl",
+        "disable",
+        "disabled",
+        "off",
+        "false",
+        "0",
+        "enable",
+        "enabled",
+        "on",
+        "true",
+        "1",
+    ]
 )
 """What MuJoCo takes in ``MUJOCO_GL`` (``mujoco/rendering/classic/gl_context.py``); with anything else it cannot be imported."""
 
