@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.serve.schema_check import Schemas
-from tests.serve.test_motions import probe_of
+from tests.serve.test_device import probe_of
 from twin.job.job_file import ToolTable
 from twin.nc.canonical import Axes
 from twin.serve.agent import Agent, Clock, RequestError

@@ -60,8 +60,7 @@ def plan(
     watched = WatchedEnd(chunks, start, part_zero)
     for phases in plan_phases(watched, limits, start=start - part_zero):
         end_time = phases.end_time
-        # A chunk is at most as long as all before it, so that the first is simulated early.
-        most = min(max(FEWEST_SAMPLES, tick), MOST_SAMPLES)
+        most = min(max(FEWEST_SAMPLES, tick // 8), MOST_SAMPLES)
         for samples in sample(phases, tick, period_s, part_zero, most):
             tick += len(samples)
             yield samples

@@ -50,10 +50,9 @@ def settle(
     )
 
 
-FEWEST_SAMPLES = 4096
-"""Setpoints of a program's first chunk at most: it is simulated before any sample is available."""
-MOST_SAMPLES = 16384
-"""Setpoints of any chunk at most: larger ones run no faster."""
+FEWEST_SAMPLES, MOST_SAMPLES = 4096, 16384
+"""Bounds of a chunk, which is no longer than an eighth of the setpoints before it: nobody looks at the first before all of it was
+simulated, nothing is simulated any more while the last is looked at, and long ones cost less."""
 
 
 def sample(
