@@ -69,7 +69,7 @@ def test_a_second_encoder_tells_backlash_and_stiffness(log: MachineLog) -> None:
     for interval, true in ((backlash, GAP), (stiffness, SPRING)):
         assert interval.low < true < interval.high
     assert given == ("motor_inertia", "screw_inertia")
-    assert "only its ratio to what lies behind the gap" in fit.undetermined["stiffness"]
+    assert "only its ratio to the mass behind the gap" in fit.undetermined["stiffness"]
 
 
 def test_without_a_force_stiffness_stands_on_the_base_s_mass(log: MachineLog) -> None:

@@ -135,14 +135,14 @@ class Contact(Protocol):
     """Measures one tool against the material."""
 
     def measure(
-        self, points: Points, suspect: BoolArray, *, doubtful: bool = False
+        self, points: Points, suspect: BoolArray, *, provisional: bool = False
     ) -> Mapping[str, Overlap]:
         """What reaches into the material as it is, along each stretch.
 
         Args:
             points: Ends of n stretches.
             suspect: In which of them the edge must not cut, shape (n,).
-            doubtful: Whether they cut walls of their own that later ones meet: nothing that these may
+            provisional: Whether they cut walls of their own that later ones meet: nothing that these may
                 meet is left out then.
 
         Returns:

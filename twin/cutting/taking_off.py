@@ -43,10 +43,10 @@ class TakingOff:
             What each stretch took off, and by name how deep something was in the material that
             must not be, shape (n,) [mm]; fewer than n stretches where it halted.
         """
-        doubtful = self.contact.measure(points, suspect, doubtful=True)
+        provisional = self.contact.measure(points, suspect, provisional=True)
         count, done = len(suspect), 0
         removal = Removal(*np.zeros((4, count)))
-        met = {name: np.zeros(count) for name in doubtful}
+        met = {name: np.zeros(count) for name in provisional}
 
         def sweep(part: slice) -> None:
             if self.edge and part.start < part.stop:
@@ -57,7 +57,9 @@ class TakingOff:
                 for column, swept in zip(removal, found, strict=True):
                     column[part] = swept
 
-        flagged = np.flatnonzero(np.any([o.depth for o in doubtful.values()], axis=0) & (count > 0))
+        flagged = np.flatnonzero(
+            np.any([o.depth for o in provisional.values()], axis=0) & (count > 0)
+        )
         # Against the material as the stretches before have left it.
         for k in flagged.tolist():
             sweep(slice(done, k))

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from twin.cutting.heights.height_map import HeightMap
 from twin.cutting.heights.outline import BoolArray
-from twin.cutting.kernels.wall_distance import EQUAL_MM, share_before
+from twin.cutting.kernels.wall_distance import EQUAL_MM, WallColumn, share_before
 from twin.cutting.kernels.wall_places import NEARER_CELLS, Vertices, Walls, onto_walls
 from twin.nc.canonical import FloatArray, IntArray
 
@@ -20,7 +20,7 @@ _ALONG = 0.3
 """Cosine between a wall and the blank's edge from which on it is not followed along the edge."""
 
 _SHARE = 0.999
-"""Share of the way to a wall that vertices are moved, so that no two come to lie on each other."""
+"""Share of the distance to a wall by which vertices are moved, so that no two come to lie on each other."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -73,21 +73,23 @@ class SurfaceMesh:
         result = np.where(self.cell < 0, height_map.bottom, height_map.heights.ravel()[self.cell])
         cells = self.cell.ravel()[self.rim]
         row, column = np.divmod(cells, height_map.heights.shape[1])
-        told, own = height_map.behind[row, column], height_map.heights[row, column]
+        wall, own = height_map.behind[row, column], height_map.heights[row, column]
         inside = self.inside[row, column]
         inwards = height_map.outline.inwards(height_map.x[column], height_map.y[row])
         widest = np.abs(inwards).max(axis=1)
         raw = np.where(inside < widest, share_before(inside, widest), 0.0)
-        cut = (told[:, 2] > raw + NEARER_CELLS) & (told[:, 1] < own)
-        result.ravel()[self.rim] = np.where(cut, np.minimum(told[:, 3] - EQUAL_MM, own), own)
+        cut = (wall[:, WallColumn.SHARE] > raw + NEARER_CELLS) & (wall[:, WallColumn.LOWEST] < own)
+        result.ravel()[self.rim] = np.where(
+            cut, np.minimum(wall[:, WallColumn.FOOT] - EQUAL_MM, own), own
+        )
         return result
 
     def _along_edge(self, height_map: HeightMap, moved: FloatArray) -> None:
         """Let vertices of the rim come to their walls along the blank's edge."""
-        way = moved.reshape(-1, 3)[self.rim, :2]
+        shift = moved.reshape(-1, 3)[self.rim, :2]
         inwards = height_map.outline.inwards(self.x.ravel()[self.rim], self.y.ravel()[self.rim])
         along = np.stack([-inwards[:, 1], inwards[:, 0]], 1)
-        share, length = (way * along).sum(1), np.hypot(*way.T)
+        share, length = (shift * along).sum(1), np.hypot(*shift.T)
         meets = np.abs(share) > _ALONG * length
         reach = np.where(meets, length**2 / np.where(meets, share, 1.0), 0.0)
         moved.reshape(-1, 3)[self.rim] = np.column_stack(

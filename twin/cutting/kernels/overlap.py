@@ -32,14 +32,14 @@ class Stood(NamedTuple):
 
     Attributes:
         heights: The height map, shape (ny, nx) [mm].
-        doubtful: Whether walls may be cut before the last of the stretches that are looked at: every
+        provisional: Whether walls may be cut before the last of the stretches that are looked at: every
             one is then taken to be as near as it can be.
     """
 
     heights: FloatArray
     behind: WallDistance
     grid: Grid
-    doubtful: bool
+    provisional: bool
 
 
 @array_kernel

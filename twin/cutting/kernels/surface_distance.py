@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from twin.compilation.compilable import inlined
 from twin.compilation.kernel import kernel
-from twin.cutting.kernels.wall_distance import HALF, KNOWN, WallDistance
+from twin.cutting.kernels.wall_distance import HALF, KNOWN, WallColumn, WallDistance
 from twin.nc.canonical import BoolArray, FloatArray, IntArray
 
 REACH = 32
@@ -86,10 +86,10 @@ def surface_distances(
 @inlined
 def _known(surface, row, column, height):
     """Distance of a middle from the wall beside it, at a height [cells]; 0: not known."""
-    told = surface.behind[row, column]
-    if told[0] <= KNOWN or told[1] >= height - SAME_MM:
+    wall = surface.behind[row, column]
+    if wall[WallColumn.DISTANCE] <= KNOWN or wall[WallColumn.LOWEST] >= height - SAME_MM:
         return 0.0
-    return told[0] - KNOWN
+    return wall[WallColumn.DISTANCE] - KNOWN
 
 
 @kernel

@@ -95,9 +95,9 @@ def removal_of_sums(sums: FloatArray, points: FloatArray, grid: Grid, removal: R
         removal.depth[i] = sums[i, LineColumn.DEEPEST]
         removal.aside[i] = 0.0
         dx, dy = points[i + 1, 0] - points[i, 0], points[i + 1, 1] - points[i, 1]
-        length, way = math.hypot(dx, dy), points[i + 1, 2] - points[i, 2]
+        length, rise = math.hypot(dx, dy), points[i + 1, 2] - points[i, 2]
         # Beside a wall a line takes a cell's share more or less than its own.
-        area = (math.hypot(length, way) + grid.cell) * removal.depth[i]
+        area = (math.hypot(length, rise) + grid.cell) * removal.depth[i]
         removal.thickness[i] = (
             min(removal.volume[i] / area, removal.depth[i]) if area > 0.0 else 0.0
         )

@@ -9,6 +9,7 @@ cell's top the nearest tells how far before its middle the material begins at mo
 only where tools have been is never said to reach into it.
 """
 
+import enum
 import math
 from typing import NamedTuple
 
@@ -22,10 +23,29 @@ from twin.cutting.kernels.tool_height import Profile, profile_height
 from twin.nc.canonical import FloatArray
 
 WallDistance = npt.NDArray[np.float32]
-"""By cell: distance of its middle from the nearest tool that passed [cells], plus ``KNOWN``, and the
-lowest that one of these was [mm], 0: none has passed. Then which share of the column is cut off by the nearest, how deep it
-has passed [mm], which share is cut off by others below that, and the distance from the nearest of those that passed lowest, as
-the first; then from the nearest of all that passed below the second of these depths. Shape (ny, nx, 7)."""
+"""What is known of the walls beside the cells of a height map, shape (ny, nx, len(WallColumn))."""
+
+
+class WallColumn(enum.IntEnum):
+    """What is known of the walls beside a cell: columns of ``WallDistance``."""
+
+    DISTANCE = 0
+    """Of the cell's middle from the nearest tool that passed [cells], plus ``KNOWN``; 0: none has passed."""
+    LOWEST = 1
+    """The lowest that any was that passed [mm]."""
+    SHARE = 2
+    """Share of the cell's column that the nearest has cut off."""
+    FOOT = 3
+    """How deep the nearest has passed [mm]."""
+    SHARE_BELOW = 4
+    """Share of the column that others have cut off below ``FOOT``."""
+    LOWEST_DISTANCE = 5
+    """As ``DISTANCE``, from the nearest of those that passed lowest."""
+    DISTANCE_BELOW = 6
+    """As ``DISTANCE``, from the nearest of all that passed below ``FOOT``."""
+
+
+DISTANCE, LOWEST, SHARE, FOOT, SHARE_BELOW, LOWEST_DISTANCE, DISTANCE_BELOW = WallColumn
 
 KNOWN = 1.0
 """Added to distances, so that 0 can say that none is known [cells]."""
@@ -34,7 +54,7 @@ FARTHEST = 1.1
 HALF = 0.5
 """Distance that a height map is allowed not to know [cells]."""
 _LEVEL_SHARE = 0.01
-"""Rise of a way below which it counts as level."""
+"""Rise per length below which a path counts as level."""
 _DOUBT = 0.05
 """What a tool may be off when it comes along a wall again [cells]."""
 _SAME_SHARE = 0.005
@@ -45,7 +65,7 @@ EQUAL_MM = 1e-3
 
 def no_walls_known(heights: FloatArray) -> WallDistance:
     """Of a height map that no tool has cut."""
-    return np.zeros((*heights.shape, 7), np.float32)
+    return np.zeros((*heights.shape, len(WallColumn)), np.float32)
 
 
 @inlined
@@ -68,23 +88,27 @@ def cut_of_column(behind, row, column, height, lower):
 
     With what the nearest wall has passed gone, the walls below it are the nearest, if there are any.
     """
-    told = behind[row, column]
-    gone = height - lower - (cut_before(told, height) - cut_before(told, lower))
-    if lower < height and told[0] > 0.0:
-        if lower <= told[1]:
-            told[0], told[1], told[2], told[3] = 0.0, 0.0, 0.0, 0.0
-            told[4], told[5], told[6] = 0.0, 0.0, 0.0
-        elif told[6] > 0.0 and lower <= told[3]:
-            told[0], told[2], told[3] = told[6], told[4], told[1]
-            told[4], told[5], told[6] = 0.0, 0.0, 0.0
+    wall = behind[row, column]
+    gone = height - lower - (cut_before(wall, height) - cut_before(wall, lower))
+    if lower < height and wall[DISTANCE] > 0.0:
+        if lower <= wall[LOWEST]:
+            wall[DISTANCE], wall[LOWEST], wall[SHARE], wall[FOOT] = 0.0, 0.0, 0.0, 0.0
+            wall[SHARE_BELOW], wall[LOWEST_DISTANCE], wall[DISTANCE_BELOW] = 0.0, 0.0, 0.0
+        elif wall[DISTANCE_BELOW] > 0.0 and lower <= wall[FOOT]:
+            wall[DISTANCE], wall[SHARE], wall[FOOT] = (
+                wall[DISTANCE_BELOW],
+                wall[SHARE_BELOW],
+                wall[LOWEST],
+            )
+            wall[SHARE_BELOW], wall[LOWEST_DISTANCE], wall[DISTANCE_BELOW] = 0.0, 0.0, 0.0
     return gone
 
 
 @inlined
-def cut_before(told, height):
+def cut_before(wall, height):
     """How much of a column that ends at a height walls have cut off before its middle, as of a whole column [mm]."""
-    below = max(min(height, told[3]) - told[1], 0.0)
-    return told[2] * max(height - told[3], 0.0) + told[4] * below
+    below = max(min(height, wall[FOOT]) - wall[LOWEST], 0.0)
+    return wall[SHARE] * max(height - wall[FOOT], 0.0) + wall[SHARE_BELOW] * below
 
 
 class _Passing(NamedTuple):
@@ -115,12 +139,12 @@ def note_walls(
     done: bool,
     sums: FloatArray,
 ) -> None:
-    """Note what a tool has passed by on a straight way, as far as walls are off whole cells.
+    """Note what a tool has passed by on a straight path, as far as walls are off whole cells.
 
     Of a top that it has made a slope nothing is reported: deeper, it goes on before the cell's middle.
 
     Args:
-        cells: The height map, cut up to the end of the way, whose walls are written.
+        cells: The height map, cut up to the end of the path, whose walls are written.
         begin: Tool tip at its beginning, shape (3,) [mm].
         end: At its end.
         done: Whether what it is beside at the beginning has been noted.
@@ -131,18 +155,18 @@ def note_walls(
     level = max(min(begin[2], end[2]), grid.bottom) + EQUAL_MM
     if level >= grid.top:
         return
-    rise, way = abs(end[2] - begin[2]), math.hypot(end[0] - begin[0], end[1] - begin[1])
-    slopes = flat < radius or (way > 0.0 and rise > _LEVEL_SHARE * way)
+    rise, length = abs(end[2] - begin[2]), math.hypot(end[0] - begin[0], end[1] - begin[1])
+    slopes = flat < radius or (length > 0.0 and rise > _LEVEL_SHARE * length)
     low = max(0, math.ceil((min(begin[1], end[1]) - outer - grid.origin[1]) / cell))
     high = math.floor((max(begin[1], end[1]) + outer - grid.origin[1]) / cell)
     side = profile_height(radius, radius, flat, corner, slope)
     highest = max(begin[2], end[2]) + side + EQUAL_MM
     passing = _Passing(begin, end, radius, side, level, highest, done)
     middle_x, middle_y = 0.5 * (begin[0] + end[0]), 0.5 * (begin[1] + end[1])
-    around = (outer + 0.5 * way) ** 2
+    around = (outer + 0.5 * length) ** 2
     for row in range(low, min(high, heights.shape[0] - 1) + 1):
         y = grid.origin[1] + row * cell
-        if way > cell:
+        if length > cell:
             left, right = chord(begin[0], begin[1], end[0], end[1], outer, y)
         else:
             half = math.sqrt(max(around - (y - middle_y) ** 2, 0.0))
@@ -160,8 +184,8 @@ def note_walls(
                 along = (grid.origin[0] + column * cell - begin[0]) * dx + before
                 if along > 0.0 or not done:
                     note_wall(heights, behind, row, column, level, 0.0)
-                    if behind[row, column, 6] > 0.0:
-                        behind[row, column, 6] = KNOWN
+                    if behind[row, column, DISTANCE_BELOW] > 0.0:
+                        behind[row, column, DISTANCE_BELOW] = KNOWN
 
 
 @inlined
@@ -212,51 +236,59 @@ def _pass_by(cells, row, column, passing, sums):
 
 
 @inlined
-def _note_cut(cells, place, level, wall):
+def _note_cut(cells, place, level, passed):
     """Note a wall before the middle of a cell that stands.
 
     Args:
         level: Below which the tool has not passed [mm].
-        wall: How far the middle is behind it [cells], which share of the cell lies before it, and its foot [mm].
+        passed: How far the middle is behind it [cells], which share of the cell lies before it, and its foot [mm].
 
     Returns:
         What of the cell's column is gone now, as of a whole column, and how deep it is gone at most [mm].
     """
-    height, told, (off, share, foot) = cells.heights[place], cells.behind[place], wall
-    before, lowest, down_to = cut_before(told, height), told[1], told[3]
+    height, wall, (off, share, foot) = cells.heights[place], cells.behind[place], passed
+    before, lowest, down_to = cut_before(wall, height), wall[LOWEST], wall[FOOT]
     below = height
-    if told[0] == 0.0 or lowest >= height:
+    if wall[DISTANCE] == 0.0 or lowest >= height:
         before = 0.0
-        told[2], told[3], told[4], told[5], told[6] = share, foot, 0.0, 0.0, 0.0
-    elif KNOWN + off < told[0] and abs(share - told[2]) > _SAME_SHARE:
+        wall[SHARE], wall[FOOT], wall[SHARE_BELOW], wall[LOWEST_DISTANCE], wall[DISTANCE_BELOW] = (
+            share,
+            foot,
+            0.0,
+            0.0,
+            0.0,
+        )
+    elif KNOWN + off < wall[DISTANCE] and abs(share - wall[SHARE]) > _SAME_SHARE:
         if foot > down_to:
-            cut = told[2] * (foot - down_to) + told[4] * (down_to - lowest)
-            told[4] = cut / (foot - lowest)
+            cut = wall[SHARE] * (foot - down_to) + wall[SHARE_BELOW] * (down_to - lowest)
+            wall[SHARE_BELOW] = cut / (foot - lowest)
             if foot > down_to + EQUAL_MM:
-                _note_below(told, told[0])
-        told[2], told[3] = share, foot
-    elif KNOWN + off < told[0] + _SAME_SHARE:
+                _note_below(wall, wall[DISTANCE])
+        wall[SHARE], wall[FOOT] = share, foot
+    elif KNOWN + off < wall[DISTANCE] + _SAME_SHARE:
         # The same wall again: what the machine is off is no chip.
-        told[3], below = min(foot, down_to), min(height, down_to)
+        wall[FOOT], below = min(foot, down_to), min(height, down_to)
     elif foot < down_to:
-        nearer, below = KNOWN + off < told[5], min(height, down_to)
-        _note_below(told, KNOWN + off)
+        nearer, below = KNOWN + off < wall[LOWEST_DISTANCE], min(height, down_to)
+        _note_below(wall, KNOWN + off)
         if nearer:
             # What came towards the cell comes by it now.
-            cut = share * (down_to - foot) + told[4] * max(foot - lowest, 0.0)
+            cut = share * (down_to - foot) + wall[SHARE_BELOW] * max(foot - lowest, 0.0)
         else:
-            cut = told[4] * (down_to - lowest) + share * max(lowest - foot, 0.0)
-        told[4] = cut / (down_to - min(foot, lowest))
+            cut = wall[SHARE_BELOW] * (down_to - lowest) + share * max(lowest - foot, 0.0)
+        wall[SHARE_BELOW] = cut / (down_to - min(foot, lowest))
         if nearer or foot < lowest:
-            told[5] = KNOWN + off
+            wall[LOWEST_DISTANCE] = KNOWN + off
     note_wall(cells.heights, cells.behind, place[0], place[1], level, max(off, 0.0))
-    return cut_before(told, height) - before, below - foot
+    return cut_before(wall, height) - before, below - foot
 
 
 @inlined
-def _note_below(told, distance):
+def _note_below(wall, distance):
     """Note the distance of one that has passed below the nearest wall's foot."""
-    told[6] = distance if told[6] == 0.0 else min(told[6], distance)
+    wall[DISTANCE_BELOW] = (
+        distance if wall[DISTANCE_BELOW] == 0.0 else min(wall[DISTANCE_BELOW], distance)
+    )
 
 
 @inlined
@@ -265,16 +297,16 @@ def note_wall(heights, behind, row, column, level, off):
     height = heights[row, column]
     if height <= level:
         return
-    told = behind[row, column]
-    if told[0] == 0.0 or told[1] >= height:
-        told[0], told[1], told[4] = KNOWN + off, level, 0.0
+    wall = behind[row, column]
+    if wall[DISTANCE] == 0.0 or wall[LOWEST] >= height:
+        wall[DISTANCE], wall[LOWEST], wall[SHARE_BELOW] = KNOWN + off, level, 0.0
         return
-    told[0] = min(told[0], KNOWN + off)
-    if level < told[1]:
+    wall[DISTANCE] = min(wall[DISTANCE], KNOWN + off)
+    if level < wall[LOWEST]:
         # What is cut off below the nearest reaches farther down, and is no more for that.
-        down_to = min(height, told[3])
-        told[4] *= max(down_to - told[1], 0.0) / max(down_to - level, EQUAL_MM)
-        told[1] = level
+        down_to = min(height, wall[FOOT])
+        wall[SHARE_BELOW] *= max(down_to - wall[LOWEST], 0.0) / max(down_to - level, EQUAL_MM)
+        wall[LOWEST] = level
 
 
 @inlined
@@ -284,12 +316,12 @@ def reach_before(stood, row, column, height):
     Args:
         height: Its height [mm].
     """
-    if stood.doubtful:
+    if stood.provisional:
         return HALF * stood.grid.cell
-    told = stood.behind[row, column]
-    if told[0] == 0.0 or told[1] >= height:
+    wall = stood.behind[row, column]
+    if wall[DISTANCE] == 0.0 or wall[LOWEST] >= height:
         return 0.0
-    return stood.grid.cell * min(max(told[0] - KNOWN - HALF, 0.0), HALF)
+    return stood.grid.cell * min(max(wall[DISTANCE] - KNOWN - HALF, 0.0), HALF)
 
 
 @inlined

@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from twin.compilation.compilable import inlined
 from twin.compilation.kernel import kernel
-from twin.cutting.kernels.wall_distance import EQUAL_MM, KNOWN, WallDistance
+from twin.cutting.kernels.wall_distance import EQUAL_MM, KNOWN, WallColumn, WallDistance
 from twin.nc.canonical import FloatArray, IntArray
 
 NEARER_CELLS = 0.02
@@ -156,7 +156,7 @@ def _to_wall(walls: Walls, place: _Place, vertices: Vertices) -> tuple[float, fl
                 if off < 0.0:
                     continue
                 x, y = place.x - column, place.y - row
-                tall = walls.heights[row, column] - walls.behind[row, column, 1]
+                tall = walls.heights[row, column] - walls.behind[row, column, WallColumn.LOWEST]
                 weight = (tall / (x * x + y * y + _NEAR)) ** 2
                 behind = off + x * normal_x + y * normal_y
                 sum_x -= weight * behind * normal_x
@@ -170,7 +170,8 @@ def _to_wall(walls: Walls, place: _Place, vertices: Vertices) -> tuple[float, fl
 @inlined
 def _ends_at(walls, row, column, place, spacing):
     """Whether the upper edge of the wall before a cell, or its foot, is as high as a place."""
-    lowest, foot = walls.behind[row, column, 1], walls.behind[row, column, 3]
+    wall = walls.behind[row, column]
+    lowest, foot = wall[WallColumn.LOWEST], wall[WallColumn.FOOT]
     if not place.at_foot:
         return foot <= place.z + 2.0 * EQUAL_MM
     off = min(abs(lowest - place.z), abs(foot - place.z))
@@ -203,7 +204,7 @@ def _wall_before(walls: Walls, row: int, column: int) -> tuple[float, float, flo
                 if not (0 <= to_row < rows and 0 <= to_column < columns):
                     continue
                 beside = _behind_cut(walls, to_row, to_column)
-                higher = walls.behind[to_row, to_column, 1] >= own - EQUAL_MM
+                higher = walls.behind[to_row, to_column, WallColumn.LOWEST] >= own - EQUAL_MM
                 if beside < 0.0 or higher or walls.heights[to_row, to_column] < own - EQUAL_MM:
                     continue
                 across = along * y - down * x
@@ -218,6 +219,7 @@ def _wall_before(walls: Walls, row: int, column: int) -> tuple[float, float, flo
 @inlined
 def _behind_cut(walls, row, column):
     """How far a cell's middle is behind a wall that was cut [cells]; negative where none is known but the blank's own side."""
-    told, off = walls.behind[row, column], walls.behind[row, column, 0] - KNOWN
-    known = off > 0.0 and told[1] < walls.heights[row, column]
+    wall = walls.behind[row, column]
+    off = wall[WallColumn.DISTANCE] - KNOWN
+    known = off > 0.0 and wall[WallColumn.LOWEST] < walls.heights[row, column]
     return off if known and walls.inside[row, column] - off > NEARER_CELLS else -1.0

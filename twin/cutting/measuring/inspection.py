@@ -7,7 +7,7 @@ import numpy as np
 
 from twin.cutting.heights.height_map import HeightMap
 from twin.cutting.kernels.surface_distance import FoundBy, MapSurface, surface_distances
-from twin.cutting.kernels.wall_distance import KNOWN, WallDistance
+from twin.cutting.kernels.wall_distance import KNOWN, WallColumn, WallDistance
 from twin.cutting.material import STRAIGHT_MM
 from twin.errors import ConfigError
 from twin.nc.canonical import BoolArray, FloatArray
@@ -18,6 +18,8 @@ STEEPEST = 1.0
 that is displaced by a hair's breadth differs by its whole height."""
 WALL_ERROR_MM = 2.0 * STRAIGHT_MM
 """What the places of two walls that tools have left are off by at most [mm]."""
+_TO_THE_SIDE = 1.5
+"""From the middle of the last cell that is measured, behind one at the blank's side, to that side [cells]."""
 _BESIDE = 0.75
 """Every wall has a cell behind it whose middle is as near [cells]."""
 RAW = 1e-3
@@ -139,15 +141,33 @@ def inspect(part: HeightMap, nominal: HeightMap, tolerance_um: float) -> Inspect
     unseen &= ~_both_slope(part, nominal)
     unseen |= _nominal_within_raw_side(part, nominal)
     off = above * part.cell**2
+    deviation = np.where(unseen, np.nan, deviation)
     coarse = unseen.any() or bool((found_by == FoundBy.CELLS).any())
+    known_to = WALL_ERROR_MM + _TO_THE_SIDE * _change_beside(edge, deviation)
     return Inspection(
-        deviation_mm=np.where(unseen, np.nan, deviation),
-        bound_mm=part.cell if coarse else min(WALL_ERROR_MM, part.cell),
+        deviation_mm=deviation,
+        bound_mm=part.cell if coarse else min(known_to, part.cell),
         judged=int((touched | rest).sum()),
         tolerance_um=tolerance_um,
         standing_mm3=float(off.clip(min=0.0).sum()),
         missing_mm3=float((-off).clip(min=0.0).sum()),
     )
+
+
+def _change_beside(edge: BoolArray, deviation: FloatArray) -> float:
+    """How much the deviation changes at most from the cells beside those at the blank's sides, which are not measured, to the next [mm].
+
+    A wall that runs into a side goes on from one of the three cells behind it.
+    """
+    most = 0.0
+    for turn in range(4):
+        outside, measured = np.rot90(edge, turn), np.rot90(deviation, turn)
+        behind = np.pad(measured[2:], ((0, 0), (1, 1)), constant_values=np.nan)
+        next_three = np.stack([behind[:, :-2], behind[:, 1:-1], behind[:, 2:]])
+        change = np.fmin.reduce(np.abs(next_three - measured[1:-1]))
+        at = outside[:-2] & np.isnan(measured[:-2]) & np.isfinite(change)
+        most = max(most, float(change[at].max(initial=0.0)))
+    return most
 
 
 def _beside_walls(height_map: HeightMap) -> BoolArray:
@@ -159,7 +179,7 @@ def _beside_walls(height_map: HeightMap) -> BoolArray:
         before, after = [(0, 0), (0, 0)], [(0, 0), (0, 0)]
         before[axis], after[axis] = (1, 0), (0, 1)
         drop = np.maximum(drop, np.maximum(np.pad(step, before), np.pad(-step, after)))
-    walls = height_map.behind[..., 0]
+    walls = height_map.behind[..., WallColumn.DISTANCE]
     near = (walls > KNOWN) & (walls <= KNOWN + _BESIDE)
     steep = (drop > STEEPEST * height_map.cell) & (walls <= KNOWN)
     return height_map.solid() & ~_raw_sides(height_map) & (steep | near)
@@ -168,7 +188,7 @@ def _beside_walls(height_map: HeightMap) -> BoolArray:
 def _raw_sides(height_map: HeightMap) -> BoolArray:
     """Cells whose nearest wall is the blank's own side."""
     inside = height_map.outline.inside(height_map.x, height_map.y[:, None]) / height_map.cell
-    return np.abs(height_map.behind[..., 0] - KNOWN - inside) < RAW
+    return np.abs(height_map.behind[..., WallColumn.DISTANCE] - KNOWN - inside) < RAW
 
 
 def _without(behind: WallDistance, cells: BoolArray) -> WallDistance:
@@ -178,12 +198,18 @@ def _without(behind: WallDistance, cells: BoolArray) -> WallDistance:
 def _nominal_within_raw_side(part: HeightMap, nominal: HeightMap) -> BoolArray:
     """Cells at a side of the blank that no tool has touched although the nominal part ends before it."""
     own, walls = _raw_sides(part) & ~_raw_sides(nominal), nominal.behind
-    return own & (walls[..., 0] > KNOWN) & (walls[..., 1] <= part.behind[..., 1] + part.cell)
+    return (
+        own
+        & (walls[..., WallColumn.DISTANCE] > KNOWN)
+        & (walls[..., WallColumn.LOWEST] <= part.behind[..., WallColumn.LOWEST] + part.cell)
+    )
 
 
 def _both_slope(part: HeightMap, nominal: HeightMap) -> BoolArray:
     """Where both are known to be a slope, of which heights tell all."""
-    return (part.behind[..., 0] == KNOWN) & (nominal.behind[..., 0] == KNOWN)
+    return (part.behind[..., WallColumn.DISTANCE] == KNOWN) & (
+        nominal.behind[..., WallColumn.DISTANCE] == KNOWN
+    )
 
 
 def steepness(heights: FloatArray, cell: float) -> FloatArray:

@@ -13,7 +13,7 @@ from twin.cutting.kernels.surface_distance import (
     MapSurface,
     surface_distances,
 )
-from twin.cutting.kernels.wall_distance import KNOWN
+from twin.cutting.kernels.wall_distance import KNOWN, WallColumn
 from twin.cutting.measuring.inspection import RAW, STEEPEST, steepness
 from twin.cutting.measuring.nominal import Deep, NominalWatch
 from twin.files.stl import read_stl
@@ -77,7 +77,7 @@ class HeightMapNominalWatch(NominalWatch[HeightMap]):
         left, top = cut.heights[row, column], nominal.heights[row, column]
         # Where it stands, the wall before it is where it should not be.
         stands = left >= top - self._allowed
-        behind = (nominal.behind[row, column, 0] - KNOWN) * cut.cell
+        behind = (nominal.behind[row, column, WallColumn.DISTANCE] - KNOWN) * cut.cell
         place = cut.x[column], cut.y[row]
         return Deep(
             points=np.stack([*place, left], axis=1),
@@ -92,10 +92,12 @@ class HeightMapNominalWatch(NominalWatch[HeightMap]):
         cut, cell = self.cutter.map, self.cutter.map.cell
         heights, behind = cut.heights[rows, columns], cut.behind[rows, columns]
         nominal, walls = self.nominal.heights[rows, columns], self.nominal.behind[rows, columns]
-        before = (walls[..., 0] - behind[..., 0]) * cell
-        before[(walls[..., 0] <= KNOWN) | (behind[..., 0] <= KNOWN)] = 0.0
+        before = (walls[..., WallColumn.DISTANCE] - behind[..., WallColumn.DISTANCE]) * cell
+        before[
+            (walls[..., WallColumn.DISTANCE] <= KNOWN) | (behind[..., WallColumn.DISTANCE] <= KNOWN)
+        ] = 0.0
         inside = cut.outline.inside(cut.x[columns], cut.y[rows, None]) / cell
-        before[np.abs(behind[..., 0] - KNOWN - inside) < RAW] = 0.0
+        before[np.abs(behind[..., WallColumn.DISTANCE] - KNOWN - inside) < RAW] = 0.0
         wanted = (nominal - heights > self._allowed) | (before > self._allowed)
         found, found_by = np.zeros(heights.shape), np.zeros(heights.shape, np.int64)
         flat = np.maximum(steepness(heights, cell), steepness(nominal, cell)) <= STEEPEST

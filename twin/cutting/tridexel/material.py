@@ -143,10 +143,10 @@ class TriDexelContact:
                 self._boxes.append(each)
 
     def measure(
-        self, points: Points, suspect: BoolArray, *, doubtful: bool = False
+        self, points: Points, suspect: BoolArray, *, provisional: bool = False
     ) -> Mapping[str, Overlap]:
         """What reaches into the material as it is, along each stretch."""
-        del doubtful
+        del provisional
         poses, found = _poses(points), {}
         for name, (solid, layer) in self._solids.items():
             found[name] = self._depth(poses, solid, layer)

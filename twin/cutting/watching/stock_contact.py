@@ -68,12 +68,12 @@ class StockContact:
         } | {EDGE: BRUSH_MM}
 
     def measure(
-        self, points: Points, suspect: BoolArray, *, doubtful: bool = False
+        self, points: Points, suspect: BoolArray, *, provisional: bool = False
     ) -> dict[str, Overlap]:
         """What reaches into the material as it is, along each stretch; see ``Contact``."""
         material = self._material
         count = len(suspect)
-        stood = Stood(material.heights, material.behind, material.grid, doubtful)
+        stood = Stood(material.heights, material.behind, material.grid, provisional)
         found = {}
         for solid in self._uprights:
             places = points.carrying(solid)
