@@ -26,7 +26,7 @@ _ROUNDS = 3
 _LEAST = 0.5
 """Height of the lowest step that is a wall [cells]."""
 _EVEN = 0.5
-"""By how much the foot of a wall and a vertex before it may differ in height: what a ball leaves is rounder [spacings]."""
+"""By how much the foot of a wall and a vertex before it may differ in height: what a ball leaves is rounder [cells]."""
 _NEAR = 0.01
 """Square of the distance within which walls count alike [square cells]."""
 
@@ -86,7 +86,7 @@ def onto_walls(walls: Walls, vertices: Vertices, moved: FloatArray) -> None:
     """Find by how much each vertex beside a wall is off it.
 
     Args:
-        moved: Set to the way from each vertex to its wall in X and Y [cells], and along the surface up [mm], 0 where there is
+        moved: Set to the shift of each vertex onto its wall in X and Y [cells], and along the surface up [mm], 0 where there is
             no wall, shape (my, mx, 3).
     """
     for row in range(vertices.z.shape[0]):
@@ -140,7 +140,7 @@ def _span(vertices, row, column):
 
 @kernel
 def _to_wall(walls: Walls, place: _Place, vertices: Vertices) -> tuple[float, float]:
-    """The way from a place to the nearest walls [cells]."""
+    """The shift from a place onto the nearest walls [cells]."""
     rows, columns = walls.heights.shape
     middle_row, middle_column = round(place.y), round(place.x)
     for ring in range(vertices.step + 1):
@@ -150,7 +150,7 @@ def _to_wall(walls: Walls, place: _Place, vertices: Vertices) -> tuple[float, fl
             for column in range(middle_column - ring, middle_column + ring + 1, next_column):
                 if not 0 <= column < columns:
                     continue
-                if not _ends_at(walls, row, column, place, vertices.spacing):
+                if not _ends_at(walls, row, column, place, vertices.spacing / vertices.step):
                     continue
                 off, normal_x, normal_y = _wall_before(walls, row, column)
                 if off < 0.0:
@@ -168,14 +168,14 @@ def _to_wall(walls: Walls, place: _Place, vertices: Vertices) -> tuple[float, fl
 
 
 @inlined
-def _ends_at(walls, row, column, place, spacing):
+def _ends_at(walls, row, column, place, cell):
     """Whether the upper edge of the wall before a cell, or its foot, is as high as a place."""
     wall = walls.behind[row, column]
     lowest, foot = wall[WallColumn.LOWEST], wall[WallColumn.FOOT]
     if not place.at_foot:
         return foot <= place.z + 2.0 * EQUAL_MM
     off = min(abs(lowest - place.z), abs(foot - place.z))
-    return walls.heights[row, column] > place.z + EQUAL_MM and off < _EVEN * spacing
+    return walls.heights[row, column] > place.z + EQUAL_MM and off < _EVEN * cell
 
 
 @kernel
