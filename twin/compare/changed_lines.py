@@ -57,14 +57,14 @@ def changed_codes(before: Sequence[str], now: Sequence[str]) -> Iterator[tuple[i
             if _CODE.sub(" ", there).split() == _CODE.sub(" ", here).split() and (
                 offsets or len(said) == len(says) > len(said & says)
             ):
-                yield line, f"{_told(says - said)}, baseline {_told(said - says)}"
+                yield line, f"{_as_text(says - said)}, baseline {_as_text(said - says)}"
 
 
 def _codes(line: str) -> set[tuple[str, float]]:
     return {(letter.upper(), float(value)) for letter, value in _CODE.findall(line)}
 
 
-def _told(codes: set[tuple[str, float]]) -> str:
+def _as_text(codes: set[tuple[str, float]]) -> str:
     return " ".join(f"{letter}{value:g}" for letter, value in sorted(codes)) or "no offset"
 
 

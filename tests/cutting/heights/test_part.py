@@ -11,7 +11,7 @@ from tests.cutting.conftest import samples
 from twin.cutting.cut import Cutter
 from twin.cutting.heights.height_map import HeightMap, blank
 from twin.cutting.heights.part import part_mesh, write_stl
-from twin.cutting.heights.surface_mesh import surface_mesh
+from twin.cutting.heights.surface_mesh import surface_faces, surface_mesh
 from twin.job.job_file import StockTable, ToolTable
 from twin.nc.canonical import FloatArray
 from twin.toolpath.part_frame import PartFrame
@@ -152,6 +152,20 @@ def test_a_helix_across_the_edge_leaves_the_edge_as_low_as_its_floor() -> None:
     mesh = surface_mesh(cutter.map)
     vertices = mesh.vertices(cutter.map)[mesh.cell >= 0]
     assert vertices[:, 2].min() == pytest.approx(-3.0, abs=0.05)
+
+
+def test_the_flank_of_a_groove_has_no_slivers_where_it_is_drawn_coarsely() -> None:
+    tool, ahead = ToolTable(number=1, diameter=6.0, kind="ball"), np.array([0.94, 0.342, 0.0])
+    cutter = Cutter(BOX.model_copy(update={"cell": 0.3}), tool, PartFrame(None, (0.0, 0.0)), ORIGIN)
+    ends = np.outer([-25.0, 25.0], ahead) - [0.0, 0.0, 3.0]
+    cutter.add(samples(ends), np.zeros(2, np.bool_))
+    mesh = surface_mesh(cutter.map, 4)
+    vertices = mesh.vertices(cutter.map)
+    corners = vertices.reshape(-1, 3)[surface_faces(mesh.patches, vertices[..., 2])]
+    inner = corners[np.hypot(*corners.mean(axis=1)[:, :2].T) < 7.0]
+    normals = np.cross(inner[:, 1] - inner[:, 0], inner[:, 2] - inner[:, 0])
+    along = normals @ ahead / np.linalg.norm(normals, axis=1)
+    assert np.abs(along).max() < 0.4
 
 
 def wall_points(mesh: trimesh.Trimesh) -> FloatArray:
