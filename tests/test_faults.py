@@ -75,6 +75,14 @@ def test_an_interruption_within_an_exec_ends_with_the_code_too(tmp_path: Path) -
     assert done.returncode == 130
 
 
+def ended(script: str) -> "subprocess.CompletedProcess[str]":
+    """A process of Python that has run a script beside the package."""
+    return subprocess.run(
+        [sys.executable, "-c", script],
+        cwd=Path(__file__).parents[1], capture_output=True, text=True, check=False, timeout=60,
+    )  # fmt: skip
+
+
 WITHIN_A_LIBRARY = """
 import os, signal
 import twin.__main__, twin.cli
@@ -91,10 +99,7 @@ twin.__main__.main()
 
 
 def test_an_interruption_that_a_library_makes_another_error_of_is_one() -> None:
-    done = subprocess.run(
-        [sys.executable, "-c", WITHIN_A_LIBRARY],
-        cwd=Path(__file__).parents[1], capture_output=True, text=True, check=False, timeout=60,
-    )  # fmt: skip
+    done = ended(WITHIN_A_LIBRARY)
     assert done.returncode == 130
     assert done.stderr == "interrupted: what was complete is kept, nothing is torn\n"
 
@@ -113,10 +118,7 @@ twin.__main__.main()
 
 
 def test_an_interruption_after_the_end_changes_nothing() -> None:
-    done = subprocess.run(
-        [sys.executable, "-c", WHILE_PYTHON_LEAVES],
-        cwd=Path(__file__).parents[1], capture_output=True, text=True, check=False, timeout=60,
-    )  # fmt: skip
+    done = ended(WHILE_PYTHON_LEAVES)
     assert (done.returncode, done.stderr) == (1, "")
 
 

@@ -40,6 +40,7 @@ def ends(made: Preparation) -> np.ndarray:
         ("part.nc", iso("G154 P2"), "G54.1 P2"),
         ("part.nc", iso("G110 G187 P2"), "G54.1 P1"),
         ("part.nc", iso("G59.1"), "G59.1"),
+        ("part.nc", iso("G55").replace("G0 X-12. Y0.", "G0 X-12."), "G55"),
         ("part.mpf", SINUMERIK.format("G505"), "G505"),
         ("part.h", KLARTEXT.format("CYCL DEF 247 DATUM SETTING ~\n  Q339=+2\n"), "PRESET2"),
         ("part.h", KLARTEXT.format("CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 #2\n"), "DATUM2"),
@@ -70,6 +71,7 @@ def test_zero_is_at_the_offset_that_is_fed_in(
     [
         (iso("G54", then=OTHER.format("G55")), 14),
         (iso("", then=OTHER.format("G55")), 14),
+        (iso("G54", then="G55\nG1 Z-2.\nG0 Z15.\nX150.\n"), 14),
         (iso("G55", then=OTHER.format("G56")), 7),
         ("O1\nG90 G0 X10. Y0.\nG55\nX150. Y90.\nM30\n", 3),
     ],
