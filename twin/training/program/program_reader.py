@@ -209,9 +209,8 @@ class ProgramReader:
                     continue
                 self._note(block, mark)
                 self._look_for_stop(block)
-                if (
-                    self.ending is not None
-                ):  # the axes come to rest behind the block: no corner follows
+                # the axes come to rest behind the block: no corner follows
+                if self.ending is not None:
                     self._control.path.flush()
                 enough = columns.count >= MOVES_AT_ONCE
         except ProgramError as error:
